@@ -8,6 +8,8 @@ Names are imported when they are first used, so that `import fairlead` is fast.
 import importlib
 from typing import TYPE_CHECKING
 
+__version__: str
+
 if TYPE_CHECKING:
     from fairlead.io.camera import load_camera, save_camera
     from fairlead.io.errors import InputError

@@ -12,8 +12,9 @@ from typing import cast
 
 import numpy as np
 
-from fairlead.io.documents import Fields, Table, nearest, read_text, read_yaml
+from fairlead.io.documents import read_text, read_yaml
 from fairlead.io.errors import InputError
+from fairlead.io.fields import Fields, Table, nearest
 from fairlead.types import DISTORTION_SIZE, Camera, CameraModel
 
 _ROS_MODELS: dict[str, CameraModel] = {

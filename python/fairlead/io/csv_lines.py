@@ -8,9 +8,11 @@ import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import cast
 
-from fairlead.io.documents import describe_os_error, nearest
+from fairlead.io.documents import describe_os_error
 from fairlead.io.errors import InputError
+from fairlead.io.fields import nearest
 
 MAX_LINE_BYTES = 65536
 
@@ -22,7 +24,7 @@ def read_csv(
     lines = _Lines(path)
     try:
         reader = csv.reader(lines, strict=True)
-        header = [name.strip() for name in next(reader, [])]
+        header = [name.strip() for name in next(reader, cast(list[str], []))]
         _check_header(header, columns, optional, path)
         for cells in reader:
             if not cells:

@@ -2,18 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """observations.parquet: the columns of observations.csv, read batch by batch."""
 
+import importlib
 import math
 import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, cast
-
-import pyarrow as pa
-import pyarrow.parquet as pq
+from typing import Any
 
 from fairlead.io.errors import InputError
 from fairlead.io.observations import COLUMNS, OPTIONAL_COLUMNS, Row, view_rows
 from fairlead.types import View
+
+pa: Any = importlib.import_module("pyarrow")  # pyarrow carries no types
+pq: Any = importlib.import_module("pyarrow.parquet")
 
 _BATCH_ROWS = 4096
 _SCHEMA = pa.schema(
@@ -33,8 +34,8 @@ def parquet_rows(path: Path) -> Iterator[Row]:
         with pq.ParquetFile(path) as table:
             _check_columns(table.schema_arrow, path)
             for batch in table.iter_batches(batch_size=_BATCH_ROWS):
-                columns = cast(dict[str, list[Any]], batch.to_pydict())
-                scores = columns.get("score", [math.nan] * batch.num_rows)
+                columns: dict[str, list[Any]] = batch.to_pydict()
+                scores = columns["score"] if "score" in columns else [math.nan] * int(batch.num_rows)
                 for cells in zip(*(columns[name] for name in COLUMNS), scores, strict=True):
                     line += 1
                     yield _row(line, cells, path)
@@ -52,7 +53,7 @@ def _row(line: int, cells: tuple[Any, ...], path: Path) -> Row:
     return Row(line, int(frame), int(stamp_ns), str(landmark or ""), (u, v, var_u, cov_uv, var_v), score)
 
 
-def _check_columns(schema: pa.Schema, path: Path) -> None:
+def _check_columns(schema: Any, path: Path) -> None:
     names: list[str] = schema.names
     missing = [name for name in COLUMNS if name not in names]
     if missing or len(set(names)) != len(names):
@@ -65,8 +66,8 @@ def _check_columns(schema: pa.Schema, path: Path) -> None:
             raise InputError(path, f"{name}: expected numbers, got {schema.field(name).type}")
 
 
-def _is_number(kind: pa.DataType) -> bool:
-    return pa.types.is_floating(kind) or pa.types.is_integer(kind)
+def _is_number(kind: Any) -> bool:
+    return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind))
 
 
 def write_parquet(path: Path, views: Iterable[View]) -> None:
@@ -83,7 +84,7 @@ def write_parquet(path: Path, views: Iterable[View]) -> None:
     os.replace(temporary, path)
 
 
-def _batch(rows: list[tuple[object, ...]]) -> pa.RecordBatch:
+def _batch(rows: list[tuple[object, ...]]) -> Any:
     columns = [[None if row[index] == "" else row[index] for row in rows] for index in range(len(_SCHEMA))]
     arrays = [pa.array(column, type=field.type) for column, field in zip(columns, _SCHEMA, strict=True)]
     return pa.record_batch(arrays, schema=_SCHEMA)

@@ -11,8 +11,9 @@ from typing import cast
 
 import numpy as np
 
-from fairlead.io.documents import Fields, read_toml
+from fairlead.io.documents import read_toml
 from fairlead.io.errors import InputError
+from fairlead.io.fields import Fields
 from fairlead.io.paths import resolve_inside
 from fairlead.types import KnownDistance, ModelCovariance, MotionKind, MotionPrior, Points3, Target
 
