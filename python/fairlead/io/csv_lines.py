@@ -81,6 +81,15 @@ class _Lines(Iterator[str]):
         self._stream.close()
 
 
+def count_lines(path: Path) -> int:
+    """Line feeds of a file. Raises InputError if it cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            return sum(block.count(b"\n") for block in iter(lambda: stream.read(1 << 20), b""))
+    except (OSError, ValueError) as error:
+        raise InputError(path, f"cannot be read: {describe_os_error(error)}") from error
+
+
 def integer_cell(cells: Mapping[str, str], column: str, path: Path, line: int) -> int:
     """A whole number that fits 64 bits."""
     text = cells[column].strip()

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fairlead.io.csv_lines import CsvWriter, integer_cell, number_cell, read_csv
+from fairlead.io.csv_lines import CsvWriter, count_lines, integer_cell, number_cell, read_csv
 from fairlead.io.errors import InputError
 from fairlead.types import View
 
@@ -47,6 +47,16 @@ def read_views(path: Path | str) -> Iterator[View]:
 
         return _views(parquet_rows(path), path)
     raise InputError(path, "expected a table of observations ending in .csv or .parquet")
+
+
+def count_observations(path: Path | str) -> int:
+    """Number of rows, for the progress of a long run: exact for Parquet, lines for CSV. Raises InputError."""
+    path = Path(path)
+    if path.suffix == ".parquet":
+        from fairlead.io.observations_parquet import count_rows
+
+        return count_rows(path)
+    return count_lines(path) - 1
 
 
 def _csv_rows(path: Path) -> Iterator[Row]:

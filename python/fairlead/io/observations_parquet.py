@@ -45,6 +45,14 @@ def parquet_rows(path: Path) -> Iterator[Row]:
         raise InputError(path, f"no readable Parquet table: {error}") from error
 
 
+def count_rows(path: Path) -> int:
+    """Rows of the table, from its footer. Raises InputError."""
+    try:
+        return int(pq.read_metadata(path).num_rows)
+    except (pa.ArrowException, OSError, ValueError) as error:
+        raise InputError(path, f"no readable Parquet table: {error}") from error
+
+
 def _row(line: int, cells: tuple[Any, ...], path: Path) -> Row:
     frame, stamp_ns, landmark, *numbers = cells
     if frame is None or stamp_ns is None:

@@ -1,0 +1,19 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What every sink is."""
+
+from typing import Protocol
+
+from fairlead.types import Estimate
+
+
+class Sink(Protocol):
+    """Takes the estimates one after another. Raises OSError where they cannot be written."""
+
+    def write(self, estimate: Estimate) -> None:
+        """Take one estimate."""
+        ...
+
+    def close(self) -> None:
+        """Finish; safe to call twice."""
+        ...
