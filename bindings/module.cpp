@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+// The private module fairlead._core. Each bindings/<part>.cpp defines one bind_<part>; this file only calls them.
+#include <nanobind/nanobind.h>
+
+namespace nb = nanobind;
+
+NB_MODULE(_core, module) {
+    module.doc() = "The C++ core of fairlead. Private: use the typed wrappers of the package.";
+    module.attr("__version__") = FAIRLEAD_VERSION;
+}
