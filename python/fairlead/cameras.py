@@ -17,7 +17,7 @@ _CONVERGED = 1e-12
 
 
 def project(camera: Camera, points_camera: Points3) -> Pixels:
-    """z = pi(p_camera) [px], row by row.
+    """Pixels z = pi(p_camera) [px], row by row.
 
     NaN rows for points that are not finite, whose depth is below MIN_DEPTH_M, or that lie where the distortion folds
     back onto the image.
@@ -77,7 +77,7 @@ def _radial_polynomials(camera: Camera) -> tuple[np.polynomial.Polynomial, np.po
 
 
 def _distort(camera: Camera, plane: Pixels) -> Pixels:
-    """x' = x f(r) + 2 p1 x y + p2 (r^2 + 2 x^2), y' = y f(r) + p1 (r^2 + 2 y^2) + 2 p2 x y, at depth 1."""
+    """At depth 1: x' = x f(r) + 2 p1 x y + p2 (r^2 + 2 x^2), y' = y f(r) + p1 (r^2 + 2 y^2) + 2 p2 x y."""
     if camera.model == "pinhole":
         return plane
     p1, p2 = camera.distortion[2:4]

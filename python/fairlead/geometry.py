@@ -59,7 +59,7 @@ def _coefficients(angle: float) -> tuple[float, float, float]:
 
 
 def log_so3(R: Matrix3) -> Vector3:
-    """phi with R = Exp(phi), |phi| <= pi [rad]; through the quaternion, so that angles near pi are exact."""
+    """Rotation vector phi with R = Exp(phi), |phi| <= pi [rad]; exact near pi too, by way of the quaternion."""
     quat = quat_xyzw_from_matrix(R)
     sine = float(np.linalg.norm(quat[:3]))
     if sine < 1e-12:
@@ -83,7 +83,7 @@ def exp_se3(xi: Vector6) -> Matrix4:
 
 
 def log_se3(T: Matrix4) -> Vector6:
-    """xi = [rho; phi] with T = Exp(xi); |phi| <= pi."""
+    """Twist xi = [rho; phi] with T = Exp(xi); |phi| <= pi."""
     phi = log_so3(T[:3, :3])
     _, b, c = _coefficients(float(np.linalg.norm(phi)))
     H = hat(phi)
@@ -110,7 +110,7 @@ def perturb(T: Matrix4, xi: Vector6) -> Matrix4:
 
 
 def difference(T_a: Matrix4, T_b: Matrix4) -> Vector6:
-    """xi such that T_b = T_a Exp(xi)."""
+    """Twist xi such that T_b = T_a Exp(xi)."""
     return log_se3(inverse(T_a) @ T_b)
 
 
@@ -146,7 +146,7 @@ def quat_xyzw_from_matrix(R: Matrix3) -> Vector4:
 
 
 def matrix_from_quat_xyzw(quat_xyzw: Vector4) -> Matrix3:
-    """Rotation matrix of a quaternion x y z w, normalised first. Raises ValueError where the norm is zero or not finite."""
+    """Rotation matrix of a quaternion x y z w, normalised first. Raises ValueError if its norm is 0 or not finite."""
     norm = float(np.linalg.norm(quat_xyzw))
     if not np.isfinite(norm) or norm == 0.0:
         raise ValueError(f"quaternion: expected a finite norm above 0, got {norm}")
@@ -181,7 +181,8 @@ def align_rigid(points_a: Points3, points_b: Points3) -> Similarity:
 def align_similarity(points_a: Points3, points_b: Points3) -> Similarity:
     """The similarity that minimises sum |a - (s R b + t)|^2, never a reflection.
 
-    Source: Umeyama 1991, Least-squares estimation of transformation parameters between two point patterns, eq. (40)-(43).
+    Source: Umeyama 1991, Least-squares estimation of transformation parameters between two point patterns,
+    eq. (40)-(43).
     Raises ValueError for fewer than 3 points, numbers that are not finite, or points on a line.
     """
     return _align(points_a, points_b, with_scale=True)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Camera calibrations -> Camera: ROS camera_info, OpenCV, Kalibr (YAML) and COLMAP (text), docs/files.md.
 
-All but COLMAP put pixel (0, 0) at the centre of the top-left pixel; COLMAP puts it half a pixel further to the top left.
+All but COLMAP put pixel (0, 0) at the centre of the top-left pixel; COLMAP puts it at that pixel's top-left corner.
 """
 
 import json
@@ -80,7 +80,7 @@ def _camera(
 def fit_distortion(model: CameraModel, coefficients: list[float], path: Path) -> np.ndarray:
     """The coefficients at the length of the model: missing ones are zero, surplus ones must be."""
     size = DISTORTION_SIZE[model]
-    allowed = {"pinhole": range(0, 15), "plumb_bob": range(0, 15), "rational_polynomial": range(8, 15)}
+    allowed = {"pinhole": range(15), "plumb_bob": range(15), "rational_polynomial": range(8, 15)}
     if len(coefficients) not in allowed.get(model, (4,)):
         raise InputError(path, f"distortion of {model}: expected {size} coefficients, got {len(coefficients)}")
     if any(coefficients[size:]):

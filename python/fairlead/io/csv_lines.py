@@ -119,7 +119,7 @@ class CsvWriter:
     """
 
     def __init__(self, path: Path | str, columns: Sequence[str]) -> None:
-        self._stream = open(path, "wb", buffering=0)  # noqa: SIM115 - closed by close()
+        self._stream = Path(path).open("wb", buffering=0)  # noqa: SIM115 - closed by close()
         self._columns = len(columns)
         self.write_rows([columns])
 

@@ -4,7 +4,6 @@
 
 import importlib
 import math
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -89,7 +88,7 @@ def write_parquet(path: Path, views: Iterable[View]) -> None:
                 writer.write_batch(_batch(rows))
                 rows = []
         writer.write_batch(_batch(rows))
-    os.replace(temporary, path)
+    temporary.replace(path)
 
 
 def _batch(rows: list[tuple[object, ...]]) -> Any:

@@ -124,7 +124,7 @@ def _estimate(cells: Mapping[str, str], path: Path, line: int) -> Estimate:
 
 
 def pose_cells(T_camera_target: Matrix4) -> list[float]:
-    """tx ty tz qx qy qz qw."""
+    """Cells tx ty tz qx qy qz qw."""
     return [*T_camera_target[:3, 3].tolist(), *quat_xyzw_from_matrix(T_camera_target[:3, :3]).tolist()]
 
 

@@ -6,7 +6,6 @@ import dataclasses
 import hashlib
 import importlib.metadata
 import json
-import os
 import platform
 import subprocess
 from dataclasses import dataclass
@@ -89,7 +88,7 @@ def write_json(path: Path, document: object) -> None:
     temporary = path.with_name(f".{path.name}.part")
     text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
     temporary.write_text(text + "\n", encoding="utf-8", newline="\n")
-    os.replace(temporary, path)
+    temporary.replace(path)
 
 
 def read_run_record(path: Path | str) -> RunRecord:

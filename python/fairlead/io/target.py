@@ -3,7 +3,6 @@
 """target.toml <-> Target, docs/files.md."""
 
 import json
-import os
 import zipfile
 import zlib
 from pathlib import Path
@@ -162,10 +161,10 @@ def save_target(path: Path | str, target: Target) -> None:
     side = path.with_suffix(".npz")
     temporary = side.with_name(f".{side.stem}.part.npz")
     np.savez(temporary, landmarks=np.array(target.landmarks, dtype=np.str_), covariance=target.covariance)
-    os.replace(temporary, side)
+    temporary.replace(side)
     temporary = path.with_name(f".{path.name}.part")
     temporary.write_text(_document(target, path.parent, side.name), encoding="utf-8", newline="\n")
-    os.replace(temporary, path)
+    temporary.replace(path)
 
 
 def _document(target: Target, folder: Path, covariance: str) -> str:

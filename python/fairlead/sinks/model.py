@@ -23,6 +23,7 @@ class ModelSink:
 
     def write(self, estimate: Estimate) -> None:
         """Save the model if that is due."""
+        del estimate  # the model is the estimator's
         self._changed = True
         start_s = time.monotonic()
         if start_s >= self._due_s:

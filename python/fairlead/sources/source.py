@@ -32,7 +32,11 @@ class ViewSource(Protocol):
     def __iter__(self) -> Iterator[View]: ...
 
     def count(self) -> int:
-        """Work to be done: the number of observations, one for an empty frame."""
+        """Work to be done, in units of `work`."""
+        ...
+
+    def work(self, view: View) -> int:
+        """The share of one view in it."""
         ...
 
 

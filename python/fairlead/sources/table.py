@@ -14,7 +14,7 @@ SUFFIXES = (".csv", ".parquet")
 
 
 class TableSource:
-    """Views of a table, streamed; every landmark must be one of `landmarks`. Raises InputError (file, line or frame)."""
+    """Views of a table, streamed; every landmark must be one of `landmarks`. Raises InputError (file, line)."""
 
     def __init__(self, path: Path, landmarks: tuple[str, ...]) -> None:
         self._path = path
@@ -31,3 +31,7 @@ class TableSource:
     def count(self) -> int:
         """Number of rows."""
         return count_observations(self._path)
+
+    def work(self, view: View) -> int:
+        """Rows of one view; an empty frame is a row too."""
+        return max(1, len(view.landmarks))

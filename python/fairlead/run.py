@@ -1,0 +1,200 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The meeting point: source -> detector -> estimator -> sinks."""
+
+import itertools
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
+from fairlead.io.camera import load_camera
+from fairlead.io.errors import InputError
+from fairlead.io.run_record import InputFile, RunRecord, input_file
+from fairlead.io.target import load_target
+from fairlead.io.timing import Timing
+from fairlead.progress import ProgressFactory, silent
+from fairlead.sinks.run_folder import RunFolder
+from fairlead.sources.source import ImageSource, ViewSource
+from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
+from fairlead.sources.table import TableSource
+from fairlead.types import Camera, PoseEstimator, Target, View
+
+if TYPE_CHECKING:
+    from fairlead.detect import Detector
+    from fairlead.tracker import TrackerOptions
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunSummary:
+    """What a run came to."""
+
+    output: Path
+    frames: int
+    frames_with_pose: int
+
+    @property
+    def coverage(self) -> float:
+        """Share of the frames that got a pose [-]."""
+        return self.frames_with_pose / self.frames
+
+
+def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary:
+    """Update an estimator frame by frame; every file is written as the frames come.
+
+    Raises InputError or UsageError before any output for files that cannot be used; InputError later for a frame that
+    cannot be read, and what was computed until then stays.
+    """
+    target, camera = _load(config)
+    source = open_views(config, target, camera)
+    estimator = make_estimator(config, target, camera)
+    timed_views = _timed(source, config.source)
+    with RunFolder(config.output, _record("track", config), target, camera) as folder:
+        folder.open_sinks(estimator)
+        with progress("track", source.count) as advance:
+            for view, detect_ms in timed_views:
+                start_s = time.perf_counter()
+                estimate = estimator.update(view)
+                update_ms = 1e3 * (time.perf_counter() - start_s)
+                folder.write(view, estimate, _timing(view, detect_ms, update_ms))
+                advance(source.work(view))
+    return _finish(config, folder.record)
+
+
+def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSummary:
+    """Solve all views of a flight at once. Errors as `track`."""
+    from fairlead.tracker import refine as refine_batch
+
+    target, camera = _load(config)
+    source = open_views(config, target, camera)
+    options = tracker_options(config.options)
+    timed_views = _timed(source, config.source)
+    with RunFolder(config.output, _record("refine", config), target, camera) as folder:
+        views: list[View] = []
+        timings: list[Timing] = []
+        with progress("read", source.count) as advance:
+            for view, detect_ms in timed_views:
+                views.append(view)
+                timings.append(_timing(view, detect_ms, float("nan")))
+                advance(source.work(view))
+        refinement = refine_batch(views, target, camera, options)
+        folder.open_sinks(None)
+        for view, estimate, timing in zip(views, refinement.estimates, timings, strict=True):
+            folder.write(view, estimate, timing)
+        folder.save_model(refinement.model)
+    return _finish(config, folder.record)
+
+
+def evaluate(config: EvaluateConfig) -> Path:
+    """Compare a run with the truth; returns the report."""
+    from fairlead.evaluate import evaluate_run
+
+    if not config.run.is_dir():
+        raise InputError(config.run, "expected a folder written by track or refine")
+    return evaluate_run(config.run, config.truth, target_true=config.target_true, output=config.output)
+
+
+class DetectedViews:
+    """The views that a detector finds in a sequence of images."""
+
+    def __init__(self, images: ImageSource, detector: "Detector") -> None:
+        self._images = images
+        self._detector = detector
+
+    def __iter__(self) -> Iterator[View]:
+        for frame in self._images:
+            yield self._detector.detect(frame.image, frame=frame.frame, stamp_ns=frame.stamp_ns)
+
+    def count(self) -> int:
+        """Number of images."""
+        return self._images.count()
+
+    def work(self, view: View) -> int:
+        """One image."""
+        del view
+        return 1
+
+
+def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSource:
+    """A table, or a folder of images with a detector, by what the path is. Raises InputError, UsageError."""
+    path = config.source
+    if path.suffix in TABLE_SUFFIXES and not path.is_dir():
+        if config.detector is not None:
+            raise UsageError(f"--detector: {path} holds observations already")
+        return TableSource(path, target.landmarks)
+    if not path.is_dir():
+        raise InputError(path, "expected observations (.csv, .parquet) or a folder of images")
+    if config.detector is None:
+        raise UsageError(f"{path} is a folder of images: expected --detector too")
+    from fairlead.detect import detector_from_spec
+    from fairlead.sources.image_folder import ImageFolderSource
+
+    return DetectedViews(ImageFolderSource(path, camera, fps=config.fps), detector_from_spec(config.detector, target))
+
+
+def make_estimator(config: TrackConfig, target: Target, camera: Camera) -> PoseEstimator:
+    """The estimator of a method. Raises InputError for an option file that cannot be used."""
+    if config.method == "map":
+        from fairlead.tracker import Tracker
+
+        return Tracker(target, camera, tracker_options(config.options))
+    if config.options is not None:
+        raise UsageError(f"--options: method {config.method} has none")
+    if config.method == "window":
+        from fairlead.baselines.free_window import WindowTracker
+
+        return WindowTracker(target, camera)
+    from fairlead.baselines.epnp import EpnpTracker
+
+    return EpnpTracker(target, camera)
+
+
+def tracker_options(path: Path | None) -> "TrackerOptions":
+    """The options of a file, or the defaults."""
+    from fairlead.io.options import load_options
+    from fairlead.tracker import TrackerOptions
+
+    return TrackerOptions() if path is None else load_options(path, TrackerOptions())
+
+
+def _load(config: InputConfig) -> tuple[Target, Camera]:
+    if config.truth is not None and not config.truth.is_file():
+        raise InputError(config.truth, "is not there; expected truth.csv")
+    return load_target(config.target), load_camera(config.camera, name=config.camera_name)
+
+
+def _timed(source: ViewSource, path: Path) -> Iterator[tuple[View, float]]:
+    """Views and the time to get each [ms]. The first is fetched at once, so that a bad source is found out early."""
+    iterator = _stopwatch(source)
+    first = next(iterator, None)
+    if first is None:
+        raise InputError(path, "holds no frames")
+    return itertools.chain([first], iterator)
+
+
+def _stopwatch(source: ViewSource) -> Iterator[tuple[View, float]]:
+    start_s = time.perf_counter()
+    for view in source:
+        yield view, 1e3 * (time.perf_counter() - start_s)
+        start_s = time.perf_counter()
+
+
+def _timing(view: View, detect_ms: float, update_ms: float) -> Timing:
+    return Timing(frame=view.frame, stamp_ns=view.stamp_ns, detect_ms=detect_ms, update_ms=update_ms)
+
+
+def _record(command: str, config: InputConfig) -> RunRecord:
+    inputs: list[InputFile] = []
+    for role in ("source", "target", "camera", "options", "truth"):
+        path: Path | None = getattr(config, role)
+        if path is not None:
+            inputs.append(input_file(role, path))
+    return RunRecord(command=command, state="running", options=config, inputs=tuple(inputs))
+
+
+def _finish(config: InputConfig, record: RunRecord) -> RunSummary:
+    if config.truth is not None:
+        evaluate(EvaluateConfig(run=config.output, truth=config.truth))
+    return RunSummary(output=config.output, frames=record.frames, frames_with_pose=record.frames_with_pose)

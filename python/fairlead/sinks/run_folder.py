@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The folder of one run: every file of it, readable up to the last frame however the run ends, docs/files.md."""
+
+import dataclasses
+import logging
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+
+from fairlead.io.camera import save_camera
+from fairlead.io.observations import ObservationWriter
+from fairlead.io.run_record import RunRecord, RunState, write_run_record
+from fairlead.io.target import save_target
+from fairlead.io.timing import Timing
+from fairlead.sinks.csv import PoseSink, TimingSink
+from fairlead.sinks.model import ModelSink
+from fairlead.sinks.sink import Sink
+from fairlead.sinks.tum import TumSink
+from fairlead.types import Camera, Estimate, PoseEstimator, Target, View
+
+_log = logging.getLogger(__name__)
+
+
+class RunFolder:
+    """Context manager that owns the files of a run. Raises OSError where they cannot be written."""
+
+    def __init__(self, path: Path, record: RunRecord, target: Target, camera: Camera) -> None:
+        self._path = path
+        self._record = record
+        self._sinks: list[Sink] = []
+        self._stack = ExitStack()
+        path.mkdir(parents=True, exist_ok=True)
+        save_target(path / "target.toml", target)
+        save_camera(path / "camera.yaml", camera)
+        write_run_record(path / "run.json", record)
+
+    def open_sinks(self, estimator: PoseEstimator | None) -> None:
+        """Start poses.csv, trajectory.tum, timing.csv, observations.csv; the model follows an estimator if given."""
+        self._observations = ObservationWriter(self._path / "observations.csv", with_scores=True)
+        self._stack.callback(self._observations.close)
+        self._timing = TimingSink(self._path / "timing.csv")
+        self._stack.callback(self._timing.close)
+        self._add(PoseSink(self._path / "poses.csv"))
+        self._add(TumSink(self._path / "trajectory.tum"))
+        if estimator is not None:
+            self._add(ModelSink(self._path / "target_refined.toml", estimator))
+
+    def _add(self, sink: Sink) -> None:
+        self._sinks.append(sink)
+        self._stack.callback(sink.close)
+
+    def write(self, view: View, estimate: Estimate, timing: Timing) -> None:
+        """Take one frame."""
+        self._observations.write(view)
+        for sink in self._sinks:
+            sink.write(estimate)
+        self._timing.write(timing)
+        with_pose = self._record.frames_with_pose + estimate.ok
+        self._record = dataclasses.replace(self._record, frames=self._record.frames + 1, frames_with_pose=with_pose)
+
+    def save_model(self, model: Target) -> None:
+        """Write target_refined.toml and .npz."""
+        save_target(self._path / "target_refined.toml", model)
+
+    @property
+    def record(self) -> RunRecord:
+        """What run.json says or will say."""
+        return self._record
+
+    def __enter__(self) -> "RunFolder":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        state: RunState = "done"
+        if kind is not None:
+            state = "failed" if issubclass(kind, Exception) else "interrupted"
+        self._record = dataclasses.replace(self._record, state=state)
+        try:
+            with self._stack:
+                self._stack.callback(write_run_record, self._path / "run.json", self._record)
+        except OSError as closing:
+            if kind is None:
+                raise
+            _log.warning("%s: not everything could be closed: %s", self._path, closing)
