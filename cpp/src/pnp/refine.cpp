@@ -99,7 +99,7 @@ Normal linearise(const Task& task, const SE3& T) noexcept {
         normal.H.bottomLeftCorner<3, 3>() += AM;
         normal.H.bottomRightCorner<3, 3>() -= AM * A;
         normal.g.head<3>() += v;
-        normal.g.tail<3>() += q.cross(v);
+        normal.g.tail<3>() += A * v;
     }
     normal.H.topRightCorner<3, 3>() = normal.H.bottomLeftCorner<3, 3>().transpose();
     return normal;
