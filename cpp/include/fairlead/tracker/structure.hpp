@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fairlead/window/covariance.hpp"
+#include "fairlead/window/levenberg_marquardt.hpp"
+
+namespace fairlead {
+
+/// What a view was worth once fused with everything before it.
+struct Fusion {
+    bool ok = false;
+    SE3 T_camera_target;
+    Mat66 covariance = Mat66::Zero();
+    double information_gained = 0.0;  ///< [nats]
+    double squares = 0.0;             ///< sum w s of this view, told units
+};
+
+/// The landmark model and all that the views said about it: a bounded window of views that are relinearised, and the compressed rest.
+/// Between relinearisations everything but the newest view is one quadratic in X. docs/estimator.md section 4.
+class Structure {
+  public:
+    /// Throws std::invalid_argument for a bad camera, prior or capacity.
+    Structure(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, int max_views, double loss_threshold);
+
+    /// Joint estimate of X and this view's pose, starting from T_start; the view stays in the window or is compressed. Allocates nothing.
+    [[nodiscard]] Fusion fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<const Observation> observations) noexcept;
+
+    [[nodiscard]] std::span<const Vec3> landmarks() const noexcept { return problem_.X; }
+    [[nodiscard]] std::span<const Mat33> landmark_covariances() const noexcept { return blocks_; }
+    [[nodiscard]] const MatX& covariance() const noexcept { return Sigma_; }
+    [[nodiscard]] double noise_factor() const noexcept { return problem_.noise_factor; }
+    [[nodiscard]] double prior_factor() const noexcept { return problem_.prior_factor; }
+    [[nodiscard]] int views() const noexcept { return static_cast<int>(problem_.views.size()); }
+
+  private:
+    bool join_newest() noexcept;
+    bool newest_system(double mu) noexcept;
+    bool relinearise(int max_iterations) noexcept;
+    void absorb_newest() noexcept;
+    void spare_one() noexcept;
+    void retire(std::size_t index) noexcept;
+    double nonlinearity() noexcept;
+    void publish() noexcept;
+
+    window::Problem problem_;
+    window::Workspace workspace_;
+    std::vector<window::ViewBlock> pool_;
+    std::vector<Eigen::Vector4d> descriptors_;
+    double radius_ = 1.0;
+
+    // The quadratic of all but the newest view, told units, gradient at X_data_; its views were linearised at X_window_.
+    MatX H_data_;
+    VecX g_data_;
+    std::vector<Vec3> X_data_, X_window_;
+
+    MatX Sigma_, Yt_, SigmaYt_;
+    VecX shift_;
+    std::vector<Mat33> blocks_;
+    std::vector<double> squares_;
+    double log_det_ = 0.0;
+    std::size_t max_views_;
+};
+
+}  // namespace fairlead

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fairlead/window/similarity.hpp"
+#include "fairlead/window/state.hpp"
+
+namespace fairlead::window {
+
+/// What views that left the window still say about the model.
+///
+/// A view with its pose eliminated is a quadratic in the model with a null space of seven directions N(X), which turns with X. Sums of
+/// quadratics taken at different X would lose it and invent knowledge of the model's orientation. So the sum is kept in the shape
+/// y = S(X) X, the model aligned onto the first one: E(X) = 1/2 u^T Lambda u - eta^T u + c, u = y(X) - X_ref, docs/estimator.md eq. (11). It is
+/// invariant under every similarity of X, exactly and for ever.
+class CompressedViews {
+  public:
+    explicit CompressedViews(std::span<const Vec3> X_ref);
+
+    /// Takes a view linearised at X (told covariances, robust weights frozen) with its state factored.
+    void add(const ViewBlock& view, std::span<const Vec3> X) noexcept;
+
+    /// Hessian (both triangles) and gradient with respect to X, value at X; all twice-negative-log units of sum rho, i.e. E = value / 2.
+    void linearise(std::span<const Vec3> X) noexcept;
+    [[nodiscard]] double value(std::span<const Vec3> X) noexcept;
+
+    [[nodiscard]] const MatX& hessian() const noexcept { return hessian_; }
+    [[nodiscard]] const VecX& gradient() const noexcept { return gradient_; }
+    [[nodiscard]] int views() const noexcept { return views_; }
+    [[nodiscard]] double weights() const noexcept { return weights_; }
+
+  private:
+    void shape(std::span<const Vec3> X, const Similarity& S) noexcept;
+
+    std::vector<Vec3> X_ref_;
+    double radius_ = 1.0;
+    MatX Lambda_;
+    VecX eta_;
+    double constant_ = 0.0;
+    int views_ = 0;
+    double weights_ = 0.0;
+
+    MatX hessian_, A_;
+    VecX gradient_, u_, q_;
+    std::vector<Vec3> y_;
+    GaugeBasis N_, N_ref_, LambdaN_, U_t_;
+};
+
+}  // namespace fairlead::window

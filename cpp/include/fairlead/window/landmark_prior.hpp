@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "fairlead/geometry/types.hpp"
+
+namespace fairlead::window {
+
+/// Covariance of a roughly known model, docs/estimator.md eq. (2):
+///   P0 = diag(sigma^2) + scale_sigma^2 x0 x0^T,  x0 = X0 about its centroid.
+/// sigma holds three standard deviations per landmark [m]; scale_sigma [-] is the common error of scale.
+[[nodiscard]] MatX landmark_covariance(std::span<const Vec3> X0, std::span<const Vec3> sigma, double scale_sigma);
+
+/// X ~ N(mean, alpha P0), held as mean and information P0^-1.
+struct LandmarkPrior {
+    VecX mean;         ///< 3N [m], landmark-major
+    MatX information;  ///< 3N x 3N [1/m^2]
+
+    [[nodiscard]] int landmarks() const noexcept { return static_cast<int>(mean.size() / 3); }
+};
+
+/// Throws std::invalid_argument unless the covariance is symmetric, finite and positive semidefinite. Directions without variance
+/// (a landmark with sigma 0 is fixed) get kFixedSigma of the model's extent, so that the information stays finite.
+[[nodiscard]] LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance);
+
+/// Standard deviation of what is held fixed, in units of the model's extent.
+inline constexpr double kFixedSigma = 1e-6;
+
+}  // namespace fairlead::window

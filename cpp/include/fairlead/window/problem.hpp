@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <optional>
+#include <vector>
+
+#include "fairlead/robust/loss.hpp"
+#include "fairlead/window/compressed_views.hpp"
+#include "fairlead/window/eliminate.hpp"
+#include "fairlead/window/landmark_prior.hpp"
+#include "fairlead/window/linearise.hpp"
+
+namespace fairlead::window {
+
+/// The negative log posterior of landmarks X and view states T_k, docs/estimator.md eq. (1) and (3):
+///   E = 1/2 [ (sum_k sum_j rho(s_kj) + compressed views) / noise_factor + (X - X0)^T P0^-1 (X - X0) / prior_factor ].
+struct Problem {
+    Camera camera;
+    std::optional<LandmarkPrior> prior;
+    std::optional<CompressedViews> compressed;
+    std::vector<Vec3> X;            ///< landmarks, target frame [m]
+    std::vector<ViewBlock> views;
+    double noise_factor = 1.0;      ///< multiplies every told covariance
+    double prior_factor = 1.0;      ///< multiplies P0
+    Loss loss;                      ///< threshold in units of the estimated noise
+
+    [[nodiscard]] int landmarks() const noexcept { return static_cast<int>(X.size()); }
+    /// The loss in told units: rho_f(s) = f rho(s / f).
+    [[nodiscard]] Loss told_loss() const noexcept { return {loss.threshold * noise_factor}; }
+};
+
+/// The normal equations with all states eliminated: S dX = -g.
+struct Workspace {
+    explicit Workspace(int landmarks);
+
+    Eliminator eliminator;
+    MatX S;                     ///< 3N x 3N, lower triangle
+    VecX g, dX, D, step;
+    Eigen::LLT<MatX> llt;
+    std::vector<Vec3> X_trial;
+    std::vector<StateVector> dT;
+    std::vector<SE3> T_trial;
+};
+
+/// Value of E at (X, T).
+[[nodiscard]] double posterior_cost(Problem& problem, std::span<const Vec3> X, std::span<const SE3> T) noexcept;
+
+/// Linearises all views and compressed views at the current estimate. False if a view has become unusable.
+[[nodiscard]] bool linearise(Problem& problem) noexcept;
+
+/// Assembles the data's part of S, g and the damping diagonal D in told units, states eliminated with damping; false if a state is singular.
+[[nodiscard]] bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexcept;
+
+/// Divides the data's part by the noise factor and adds the prior at X: the system of E itself.
+void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Workspace& workspace) noexcept;
+
+}  // namespace fairlead::window

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fairlead/geometry/se3.hpp"
+#include "fairlead/pnp/observation.hpp"
+
+namespace fairlead::window {
+
+/// What is unknown of one view: its pose. A motion prior would append velocity and acceleration here, and kDim grows with it.
+struct ViewState {
+    static constexpr int kDim = 6;
+    SE3 T_camera_target;
+};
+
+using StateVector = Eigen::Matrix<double, ViewState::kDim, 1>;
+using StateMatrix = Eigen::Matrix<double, ViewState::kDim, ViewState::kDim>;
+using StateByPoint = Eigen::Matrix<double, 3, ViewState::kDim>;
+
+/// An observation ready for the solver: covariance inverted once.
+struct Measurement {
+    int landmark = -1;
+    Vec2 z = Vec2::Zero();
+    Mat22 information = Mat22::Identity();  ///< S^-1 [1/px^2]
+};
+
+/// One measurement linearised at (T, X); B = d pi / d X_target (2 x 3), docs/estimator.md eq. (5).
+struct PointTerm {
+    Mat33 M = Mat33::Zero();  ///< w B^T S^-1 B, the landmark's own information
+    Vec3 v = Vec3::Zero();    ///< w B^T S^-1 r, the gradient with respect to the landmark
+};
+
+/// One view: state, measurements, and their linearisation. Sized once; never grows beyond the number of landmarks.
+struct ViewBlock {
+    std::int64_t stamp_ns = 0;
+    ViewState state;
+    std::vector<Measurement> measurements;
+
+    std::vector<PointTerm> terms;                   ///< one per measurement
+    StateMatrix H = StateMatrix::Zero();            ///< Hessian of the state alone
+    StateVector g = StateVector::Zero();            ///< its gradient
+    StateMatrix L_inverse = StateMatrix::Zero();    ///< inverse Cholesky factor of the (damped) H
+    double cost = 0.0;                              ///< sum rho(s)
+    double weighted_squares = 0.0;                  ///< sum w s
+    double weights = 0.0;                           ///< sum w
+
+    explicit ViewBlock(int max_landmarks = 0) {
+        measurements.reserve(static_cast<std::size_t>(max_landmarks));
+        terms.reserve(static_cast<std::size_t>(max_landmarks));
+    }
+};
+
+/// The camera's position in the target frame, -R^T t [m].
+[[nodiscard]] inline Vec3 camera_centre(const SE3& T_camera_target) noexcept {
+    return -(T_camera_target.R.transpose() * T_camera_target.t);
+}
+
+}  // namespace fairlead::window

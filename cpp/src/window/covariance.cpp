@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#include "fairlead/window/covariance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fairlead::window {
+namespace {
+
+/// Exponential integral E1(x) for x >= 1 by its continued fraction (Abramowitz and Stegun 5.1.22).
+double exponential_integral(double x) noexcept {
+    double fraction = x;
+    for (int k = 40; k >= 1; --k) fraction = x + k / (1.0 + k / fraction);
+    return std::exp(-x) / fraction;
+}
+
+/// E[w s] / E[2 w] for Gaussian errors: what the robust loss takes from a variance estimate, docs/estimator.md eq. (16).
+double gaussian_consistency(double a) noexcept {
+    if (!(a < 100.0)) return 1.0;
+    const double tail = std::exp(-0.5 * a);
+    const double e1 = exponential_integral(0.5 * a);
+    const double squares = 2.0 - tail * (a + 2.0) + 0.5 * a * a * e1;
+    const double weights = 1.0 - tail + 0.5 * a * a * (tail / a - 0.5 * e1);
+    return squares / (2.0 * weights);
+}
+
+}  // namespace
+
+void structure_covariance(const Workspace& workspace, MatX& Sigma) noexcept {
+    Sigma.setIdentity();
+    workspace.llt.solveInPlace(Sigma);
+}
+
+StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma, double noise_factor, MatX& Yt,
+                             MatX& SigmaYt) noexcept {
+    Yt.setZero();
+    for (std::size_t i = 0; i < view.terms.size(); ++i) {
+        const int j = view.measurements[i].landmark;
+        Yt.block<3, ViewState::kDim>(3 * j, 0) = reduced_rows(view, view.terms[i], X_target[static_cast<std::size_t>(j)]);
+    }
+    SigmaYt.noalias() = Sigma * Yt;
+    StateMatrix inner = Yt.transpose() * SigmaYt;
+    inner.diagonal().array() += noise_factor;
+    const StateMatrix covariance = view.L_inverse.transpose() * inner * view.L_inverse;
+    return 0.5 * (covariance + covariance.transpose());
+}
+
+void update_factors(Problem& problem, const MatX& Sigma) noexcept {
+    const double parameters = 3.0 * problem.landmarks();
+    double determined = parameters;  // of the structure, by the data
+    if (problem.prior) {
+        const MatX& information = problem.prior->information;
+        determined -= information.cwiseProduct(Sigma).sum() / problem.prior_factor;
+        determined = std::clamp(determined, 0.0, parameters);
+        const Eigen::Map<const VecX> x(problem.X.front().data(), 3 * problem.landmarks());
+        double squares = 0.0;
+        for (Eigen::Index c = 0; c < x.size(); ++c)
+            squares += (x[c] - problem.prior->mean[c]) * information.col(c).dot(x - problem.prior->mean);
+        problem.prior_factor = (kPriorBelief + squares) / (kPriorBelief + determined);
+    }
+    double squares = 0.0;
+    double freedom = -determined;
+    for (const ViewBlock& view : problem.views) {
+        squares += view.weighted_squares;
+        freedom += 2.0 * view.weights - ViewState::kDim;
+    }
+    if (problem.compressed) {
+        squares += problem.compressed->value(problem.X);
+        freedom += 2.0 * problem.compressed->weights() - ViewState::kDim * problem.compressed->views();
+    }
+    squares = std::max(squares, 0.0) / gaussian_consistency(problem.loss.threshold);
+    problem.noise_factor = (kNoiseBelief + squares) / (kNoiseBelief + std::max(freedom, 0.0));
+}
+
+}  // namespace fairlead::window

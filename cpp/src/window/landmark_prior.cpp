@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#include "fairlead/window/landmark_prior.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace fairlead::window {
+namespace {
+
+Vec3 centroid(std::span<const Vec3> X) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& x : X) sum += x;
+    return sum / static_cast<double>(X.size());
+}
+
+double extent(std::span<const Vec3> X) {
+    const Vec3 centre = centroid(X);
+    double radius = 0.0;
+    for (const Vec3& x : X) radius = std::max(radius, (x - centre).norm());
+    return radius;
+}
+
+}  // namespace
+
+MatX landmark_covariance(std::span<const Vec3> X0, std::span<const Vec3> sigma, double scale_sigma) {
+    if (sigma.size() != X0.size())
+        throw std::invalid_argument("sigma: got " + std::to_string(sigma.size()) + " entries for " + std::to_string(X0.size()) +
+                                    " landmarks, expected one each");
+    if (X0.empty()) throw std::invalid_argument("landmarks: got none, expected at least one");
+    const Eigen::Index n = static_cast<Eigen::Index>(X0.size());
+    const Vec3 centre = centroid(X0);
+    VecX offset(3 * n);
+    VecX deviation(3 * n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+        offset.segment<3>(3 * j) = scale_sigma * (X0[static_cast<std::size_t>(j)] - centre);
+        deviation.segment<3>(3 * j) = sigma[static_cast<std::size_t>(j)];
+    }
+    MatX P0 = offset * offset.transpose();
+    P0.diagonal() += deviation.cwiseAbs2();
+    return P0;
+}
+
+LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance) {
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(X0.size());
+    if (n == 0) throw std::invalid_argument("landmarks: got none, expected at least one");
+    if (covariance.rows() != n || covariance.cols() != n)
+        throw std::invalid_argument("prior covariance: got " + std::to_string(covariance.rows()) + " x " +
+                                    std::to_string(covariance.cols()) + ", expected " + std::to_string(n) + " x " + std::to_string(n));
+    LandmarkPrior prior;
+    prior.mean.resize(n);
+    for (Eigen::Index j = 0; j < n / 3; ++j) prior.mean.segment<3>(3 * j) = X0[static_cast<std::size_t>(j)];
+    if (!prior.mean.allFinite() || !covariance.allFinite())
+        throw std::invalid_argument("landmark prior: got NaN or infinite values, expected finite ones");
+    const double largest = covariance.cwiseAbs().maxCoeff();
+    if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > 1e-9 * largest)
+        throw std::invalid_argument("prior covariance: got an asymmetric matrix, expected a symmetric one");
+
+    const double floor = std::pow(kFixedSigma * std::max(extent(X0), 1e-9), 2);
+    const Eigen::SelfAdjointEigenSolver<MatX> eigen(0.5 * (covariance + covariance.transpose()));
+    if (eigen.eigenvalues().minCoeff() < -1e-9 * largest)
+        throw std::invalid_argument("prior covariance: got a negative eigenvalue, expected positive semidefinite");
+    const VecX information = (eigen.eigenvalues().array().max(0.0) + floor).inverse().matrix();
+    prior.information = eigen.eigenvectors() * information.asDiagonal() * eigen.eigenvectors().transpose();
+    prior.information = (0.5 * (prior.information + prior.information.transpose())).eval();
+    return prior;
+}
+
+}  // namespace fairlead::window
