@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The published simulation: a camera on an arc about the ship's stern, range 1 km (experiment 1 of Guo et al. 2024)."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from fairlead.simulate.errors import ModelError, ObservationError
+from fairlead.simulate.trajectory import arc_centres, look_at
+from fairlead.simulate.truth import Simulation, project_all
+from fairlead.types import Camera, Points3, Poses, Target, Vector3, View
+
+
+def box_centre(X: Points3) -> Vector3:
+    """Middle of the axis-parallel box of the landmarks [m]: what the camera looks at."""
+    return 0.5 * (X.min(axis=0) + X.max(axis=0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArcScenario:
+    """A camera on an arc about the vertical axis through the target's origin, looking at the target's middle.
+
+    Azimuths are pi - angle / 2 ... pi + angle / 2 in equal steps: the arc is symmetric about dead astern, from where a
+    landing aircraft comes. (The publication leaves open where its arc starts.) The camera looks at the middle of the
+    *told* landmarks, so its path does not depend on the draw of the true ones.
+    """
+
+    angle_deg: float = 90.0
+    """Rendezvous angle: what the arc covers [deg]."""
+    views: int = 10
+    range_m: float = 1000.0
+    """From the target's origin [m]."""
+    elevation_deg: float = 15.0
+    """Of the camera above the water, seen from the origin [deg]."""
+    interval_s: float = 3.0
+    """Between views [s]; 30 s for a quarter circle at 52 m/s."""
+    model: ModelError = field(default_factory=ModelError)
+    observation: ObservationError = field(default_factory=ObservationError)
+
+    def __post_init__(self) -> None:
+        if self.views < 1 or not (0.0 <= self.angle_deg <= 360.0 and self.range_m > 0.0 and self.interval_s > 0.0):
+            raise ValueError(
+                f"arc: expected at least one view, 0..360 degrees, a positive range and interval, got {self}"
+            )
+
+    def poses(self, X0: Points3) -> Poses:
+        """True T_camera_target of every view, (k, 4, 4)."""
+        half = 0.5 * np.radians(self.angle_deg)
+        azimuths = np.pi + np.linspace(-half, half, self.views)
+        centres = arc_centres(azimuths, self.range_m, float(np.radians(self.elevation_deg)))
+        return look_at(centres, box_centre(X0))
+
+
+def simulate_arc(target: Target, camera: Camera, scenario: ArcScenario, rng: np.random.Generator) -> Simulation:
+    """Draw one flight: true landmarks from the prior about `target`, observations of all landmarks in all views.
+
+    Parameters
+    ----------
+    target : its positions are X0; its covariance is replaced by what the scenario tells
+    camera : landmarks outside the image are observed all the same
+    scenario : geometry and errors
+    rng : the only source of randomness; same state, same flight. Scenarios that differ in what is told, or in the
+        outliers, but not in the rest, see the same landmarks and the same noise.
+    """
+    X0 = target.positions
+    X = scenario.model.draw(X0, rng)
+    T = scenario.poses(X0)
+    pixels = scenario.observation.draw(project_all(camera, X, T), rng)
+    covariances = scenario.observation.told_covariances(len(X0))
+    interval_ns = round(scenario.interval_s * 1e9)
+    views = tuple(
+        View(frame=k, stamp_ns=k * interval_ns, landmarks=target.landmarks, pixels=z, covariances=covariances)
+        for k, z in enumerate(pixels)
+    )
+    told = replace(target, covariance=scenario.model.told_covariance(X0))
+    return Simulation(camera=camera, target_told=told, views=views, X_true=X, T_true=T)

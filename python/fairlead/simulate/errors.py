@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""How the world differs from what the estimator is told: errors of the model and of the observations."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fairlead.types import ModelCovariance, PixelCovariances, Points3
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModelError:
+    """True landmarks X ~ N(X0, P0), P0 = diag(sigma_m^2) + scale_sigma^2 x0 x0^T, x0 = X0 about its centroid."""
+
+    sigma_m: float = 1.0
+    """One standard deviation of each coordinate of each landmark [m]."""
+    scale_sigma: float = 0.0
+    """One standard deviation of the common scale error [-]."""
+    told_factor: float = 1.0
+    """The estimator is told standard deviations multiplied by this [-]."""
+
+    def __post_init__(self) -> None:
+        if not (self.sigma_m >= 0.0 and self.scale_sigma >= 0.0 and self.told_factor > 0.0):
+            raise ValueError(f"model error: expected sigmas >= 0 and a factor > 0, got {self}")
+
+    def draw(self, X0: Points3, rng: np.random.Generator) -> Points3:
+        """True landmarks [m]: one draw of N(X0, P0)."""
+        independent = self.sigma_m * rng.standard_normal(X0.shape)
+        return X0 + independent + self.scale_sigma * rng.standard_normal() * (X0 - X0.mean(axis=0))
+
+    def told_covariance(self, X0: Points3) -> ModelCovariance:
+        """told_factor^2 P0, (3n, 3n) [m^2]."""
+        about = (X0 - X0.mean(axis=0)).ravel()
+        P0 = self.sigma_m**2 * np.eye(about.size) + self.scale_sigma**2 * np.outer(about, about)
+        return self.told_factor**2 * P0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObservationError:
+    """White Gaussian pixel noise, and a share of observations that are wrong by a fixed distance."""
+
+    sigma_px: float = 1.0
+    """One standard deviation of each image coordinate [px]."""
+    told_factor: float = 1.0
+    """The estimator is told sigma_px multiplied by this [-]."""
+    outlier_fraction: float = 0.0
+    """Chance of each observation to be an outlier [-]."""
+    outlier_px: float = 30.0
+    """How far an outlier is off, in a direction uniform over the circle, on top of the noise [px]."""
+
+    def __post_init__(self) -> None:
+        if not (self.sigma_px > 0.0 and self.told_factor > 0.0 and 0.0 <= self.outlier_fraction <= 1.0):
+            raise ValueError(f"observation error: expected sigma and factor > 0 and a fraction in 0..1, got {self}")
+
+    def draw(self, pixels_true: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+        """Observed pixels, same shape (..., 2) [px]."""
+        pixels = pixels_true + self.sigma_px * rng.standard_normal(pixels_true.shape)
+        if self.outlier_fraction > 0.0:
+            wrong = rng.random(pixels.shape[:-1]) < self.outlier_fraction
+            direction = rng.uniform(0.0, 2.0 * np.pi, pixels.shape[:-1])
+            offset = self.outlier_px * np.stack([np.cos(direction), np.sin(direction)], axis=-1)
+            pixels += np.where(wrong[..., None], offset, 0.0)
+        return pixels
+
+    def told_covariances(self, n: int) -> PixelCovariances:
+        """(n, 2, 2) [px^2]: what a view says of itself."""
+        return np.tile((self.told_factor * self.sigma_px) ** 2 * np.eye(2), (n, 1, 1))
