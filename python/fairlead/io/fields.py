@@ -57,6 +57,13 @@ class Fields:
             raise self.error(key, f"expected text, got {_short(value)}")
         return value
 
+    def choice(self, key: str, allowed: Collection[str]) -> str:
+        """One of the allowed words."""
+        value = self.text(key)
+        if value not in allowed:
+            raise self.error(key, f"expected one of {', '.join(allowed)}, got {value!r}")
+        return value
+
     def number(self, key: str, *, minimum: float = -np.inf) -> float:
         """A finite number >= minimum."""
         value = as_number(self.get(key))

@@ -6,7 +6,7 @@ import json
 import zipfile
 import zlib
 from pathlib import Path
-from typing import cast
+from typing import cast, get_args
 
 import numpy as np
 
@@ -103,7 +103,7 @@ def _motion(top: Fields, path: Path) -> MotionPrior | None:
     if "motion" not in top:
         return None
     fields = Fields(top.get("motion"), ("kind", "jerk_density_m_s25"), path, "motion")
-    kind = cast(MotionKind, fields.text("kind"))
+    kind = cast(MotionKind, fields.choice("kind", get_args(MotionKind)))
     density = 0.0 if kind == "none" and "jerk_density_m_s25" not in fields else fields.number("jerk_density_m_s25")
     return MotionPrior(kind=kind, jerk_density_m_s25=density)
 
