@@ -21,7 +21,8 @@ double largest(const Eigen::MatrixBase<Derived>& A) {
 /// Central differences of f at x against J over a sweep of steps; the smallest relative error found.
 /// Truncation falls and rounding grows as the step shrinks, so no single step fits all scales of f.
 template <int Rows, int Columns, typename F>
-double jacobian_error(const F& f, const Eigen::Matrix<double, Columns, 1>& x, const Eigen::Matrix<double, Rows, Columns>& J) {
+double jacobian_error(const F& f, const Eigen::Matrix<double, Columns, 1>& x,
+                      const Eigen::Matrix<double, Rows, Columns>& J) {
     double best = std::numeric_limits<double>::infinity();
     for (double relative = 1e-3; relative > 1e-9; relative *= 0.1) {
         Eigen::Matrix<double, Rows, Columns> numeric;
@@ -77,16 +78,18 @@ class Random {
 }  // namespace fairlead::testing
 
 /// Largest absolute difference of two scalars or two matrices is at most the tolerance. NaN fails.
-#define CHECK_NEAR(a, b, tolerance)                                                                                    \
-    do {                                                                                                               \
-        const double largest_difference = fairlead::testing::largest((a) - (b));                                       \
-        BOOST_CHECK_MESSAGE(largest_difference <= (tolerance), #a " and " #b " differ by " << largest_difference << "\n" \
-                                                                   << (a) << "\nand\n" << (b));                        \
+#define CHECK_NEAR(a, b, tolerance)                                                                              \
+    do {                                                                                                         \
+        const double largest_difference = fairlead::testing::largest((a) - (b));                                 \
+        BOOST_CHECK_MESSAGE(largest_difference <= (tolerance), #a " and " #b " differ by " << largest_difference \
+                                                                                           << "\n"               \
+                                                                                           << (a) << "\nand\n"   \
+                                                                                           << (b));              \
     } while (false)
 
 /// The derivative J of f at x agrees with central differences to 1e-6.
-#define CHECK_JACOBIAN(f, x, J)                                                                                        \
-    do {                                                                                                               \
-        const double relative_error = fairlead::testing::jacobian_error((f), (x), (J));                                \
-        BOOST_CHECK_MESSAGE(relative_error < 1e-6, "relative error of " #J " is " << relative_error << "\n" << (J));   \
+#define CHECK_JACOBIAN(f, x, J)                                                                                      \
+    do {                                                                                                             \
+        const double relative_error = fairlead::testing::jacobian_error((f), (x), (J));                              \
+        BOOST_CHECK_MESSAGE(relative_error < 1e-6, "relative error of " #J " is " << relative_error << "\n" << (J)); \
     } while (false)

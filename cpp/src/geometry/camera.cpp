@@ -12,7 +12,8 @@
 namespace fairlead {
 namespace {
 
-/// r with distorted_radius(r) = d, by bisection on the monotonic part and Newton's steps where they stay inside. Negative if there is none.
+/// r with distorted_radius(r) = d, by bisection on the monotonic part and Newton's steps where they stay inside.
+/// Negative if there is none.
 double ideal_radius(const Camera& camera, double d) noexcept {
     double low = 0.0, high = camera.radius_limit;
     if (!(d <= distortion::distorted_radius(camera, high))) return -1.0;
@@ -90,10 +91,14 @@ bool Camera::unproject(const Vec2& z, Vec3& ray_camera) const noexcept {
 
 int distortion_size(CameraModel model) noexcept {
     switch (model) {
-        case CameraModel::plumb_bob: return 5;
-        case CameraModel::rational: return 8;
-        case CameraModel::equidistant: return 4;
-        case CameraModel::pinhole: break;
+        case CameraModel::plumb_bob:
+            return 5;
+        case CameraModel::rational:
+            return 8;
+        case CameraModel::equidistant:
+            return 4;
+        case CameraModel::pinhole:
+            break;
     }
     return 0;
 }
@@ -106,7 +111,8 @@ Camera make_camera(CameraModel model, int width, int height, const Mat33& K, std
     if (K(0, 1) != 0.0 || K(1, 0) != 0.0 || K(2, 0) != 0.0 || K(2, 1) != 0.0 || K(2, 2) != 1.0) {
         refuse("K", "[[fx, 0, cx], [0, fy, cy], [0, 0, 1]]", "skew or another last row");
     }
-    Camera camera{.model = model, .width = width, .height = height, .fx = K(0, 0), .fy = K(1, 1), .cx = K(0, 2), .cy = K(1, 2)};
+    Camera camera{
+        .model = model, .width = width, .height = height, .fx = K(0, 0), .fy = K(1, 1), .cx = K(0, 2), .cy = K(1, 2)};
     std::copy(distortion.begin(), distortion.end(), camera.distortion.begin());
     camera.radius_limit = distortion::radius_limit(camera);
     validate(camera);
@@ -115,7 +121,8 @@ Camera make_camera(CameraModel model, int width, int height, const Mat33& K, std
 
 void validate(const Camera& camera) {
     if (camera.width <= 0 || camera.height <= 0) {
-        refuse("size", "positive width and height", std::to_string(camera.width) + " x " + std::to_string(camera.height));
+        refuse("size", "positive width and height",
+               std::to_string(camera.width) + " x " + std::to_string(camera.height));
     }
     if (!(camera.fx > 0.0 && camera.fy > 0.0) || !std::isfinite(camera.fx + camera.fy)) {
         refuse("K", "positive focal lengths", std::to_string(camera.fx) + " and " + std::to_string(camera.fy));

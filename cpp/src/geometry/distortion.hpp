@@ -12,10 +12,12 @@ namespace fairlead::distortion {
 /// False, outputs untouched, beyond radius_limit or where the mapping turns over (det J <= 0).
 [[nodiscard]] bool distort(const Camera& camera, const Vec2& m, Vec2& d, Mat22& J) noexcept;
 
-/// Radius of the distorted image of a point at radius r, without tangential terms: r is tan theta, or theta where equidistant.
+/// Radius of the distorted image of a point at radius r, without tangential terms: r is tan theta, or theta where
+/// equidistant.
 [[nodiscard]] double distorted_radius(const Camera& camera, double r) noexcept;
 
-/// First radius at which distorted_radius stops growing or has a pole, docs/cameras.md eq. (7); at most kRadiusCap, or pi / 2 where equidistant.
+/// First radius at which distorted_radius stops growing or has a pole, docs/cameras.md eq. (7); at most kRadiusCap, or
+/// pi / 2 where equidistant.
 [[nodiscard]] double radius_limit(const Camera& camera) noexcept;
 
 /// Nothing flatter than this to the image plane is projected through a distorted camera: tan 89.994 degrees.

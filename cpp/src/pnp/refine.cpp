@@ -13,12 +13,12 @@
 namespace fairlead::pnp {
 namespace {
 
-constexpr double kRankTolerance = 1e-12;     // smallest to largest pivot of the scaled information
-constexpr double kConverged = 1e-10;         // predicted decrease, of the cost
-constexpr double kFloor = 1e-20;             // and absolutely: beneath it the cost is rounding
-constexpr double kHidden = 1e12;             // least squares: what an observation behind the camera costs
+constexpr double kRankTolerance = 1e-12;  // smallest to largest pivot of the scaled information
+constexpr double kConverged = 1e-10;      // predicted decrease, of the cost
+constexpr double kFloor = 1e-20;          // and absolutely: beneath it the cost is rounding
 
-/// What refine is given, with the target's origin moved to the observed centroid: far from it, H would be ill-conditioned.
+/// What refine is given, with the target's origin moved to the observed centroid: far from it, H would be
+/// ill-conditioned.
 struct Task {
     std::span<const Vec3> X;
     std::span<const Observation> observations;
@@ -28,7 +28,9 @@ struct Task {
     double radius = 0.0;  // rms distance of the observed landmarks from it [m]
     int usable = 0;
 
-    [[nodiscard]] double hidden_cost() const noexcept { return std::isfinite(loss.threshold) ? loss.bound() : kHidden; }
+    [[nodiscard]] double hidden_cost() const noexcept {
+        return std::isfinite(loss.threshold) ? loss.bound() : kHiddenCost;
+    }
 };
 
 struct Score {
@@ -105,8 +107,9 @@ Normal linearise(const Task& task, const SE3& T) noexcept {
     return normal;
 }
 
-/// Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen and Tingleff 2004, algorithm 3.16). The weighted quadratic bounds the
-/// cost from above, because rho is concave in s, so its predicted decrease is the one to compare with. Returns the iterations spent.
+/// Levenberg-Marquardt with Nielsen's damping (Madsen, Nielsen and Tingleff 2004, algorithm 3.16). The weighted
+/// quadratic bounds the cost from above, because rho is concave in s, so its predicted decrease is the one to compare
+/// with. Returns the iterations spent.
 int minimise(const Task& task, int max_iterations, SE3& T, Score& current, Normal& normal) noexcept {
     double damping = 1e-4, growth = 2.0;
     for (int i = 0; i < max_iterations; ++i) {
@@ -157,8 +160,8 @@ Mat66 information_at_origin(const Mat66& H, const Vec3& c) noexcept {
 
 }  // namespace
 
-RefineResult refine(const SE3& T_start, std::span<const Vec3> X_target, std::span<const Observation> observations, const Camera& camera,
-                    const Loss& loss, int max_iterations) noexcept {
+RefineResult refine(const SE3& T_start, std::span<const Vec3> X_target, std::span<const Observation> observations,
+                    const Camera& camera, const Loss& loss, int max_iterations) noexcept {
     RefineResult result{.T_camera_target = T_start};
     Task task{.X = X_target, .observations = observations, .camera = camera, .loss = loss};
     if (!prepare(task) || !T_start.R.allFinite() || !T_start.t.allFinite()) return result;
@@ -174,7 +177,8 @@ RefineResult refine(const SE3& T_start, std::span<const Vec3> X_target, std::spa
     const bool least_squares = !std::isfinite(loss.threshold);
     const int needed = least_squares ? task.usable : std::max(3, (task.usable + 1) / 2);
     result.ok = current.in_front >= needed && T.t.z() > 0.0 && std::isfinite(current.cost) && T.R.allFinite() &&
-                result.T_camera_target.t.allFinite() && result.information.allFinite() && full_rank(normal.H, task.radius);
+                result.T_camera_target.t.allFinite() && result.information.allFinite() &&
+                full_rank(normal.H, task.radius);
     return result;
 }
 

@@ -18,6 +18,9 @@ namespace fairlead::pnp {
     return std::isfinite(X.sum() + observation.z.sum() + determinant) && S(0, 0) > 0.0 && determinant > 0.0;
 }
 
+/// Under least squares: what an observation behind the camera costs. Bounded losses have their own bound.
+inline constexpr double kHiddenCost = 1e12;
+
 /// s = r^T S^-1 r.
 [[nodiscard]] inline double squared_residual(const Vec2& r, const Mat22& S) noexcept {
     const double u = r.x(), v = r.y();

@@ -128,8 +128,8 @@ BOOST_AUTO_TEST_CASE(unproject_inverts_project) {
 
 BOOST_AUTO_TEST_CASE(behind_and_broken_points_are_refused) {
     for (const Camera& camera : cameras()) {
-        for (const Vec3& p : {Vec3(0, 0, -1), Vec3(0, 0, 0), Vec3(1, 1, 1e-7), Vec3(kNaN, 0, 1), Vec3(0, kNaN, 1), Vec3(0, 0, kNaN),
-                              Vec3(kInf, 0, 1), Vec3(0, -kInf, 1), Vec3(1e308, 1e308, 1e-6)}) {
+        for (const Vec3& p : {Vec3(0, 0, -1), Vec3(0, 0, 0), Vec3(1, 1, 1e-7), Vec3(kNaN, 0, 1), Vec3(0, kNaN, 1),
+                              Vec3(0, 0, kNaN), Vec3(kInf, 0, 1), Vec3(0, -kInf, 1), Vec3(1e308, 1e308, 1e-6)}) {
             Vec2 z(1, 2);
             Mat23 J = Mat23::Constant(3);
             BOOST_CHECK(!camera.project(p, z) && z == Vec2(1, 2));
@@ -192,11 +192,15 @@ BOOST_AUTO_TEST_CASE(unusable_cameras_are_refused) {
         return message_of([&] { (void)make_camera(model, width, 480, matrix, distortion); });
     };
     BOOST_CHECK(make(CameraModel::plumb_bob, 640, K, two) == "camera distortion: expected 5 coefficients, got 2");
-    BOOST_CHECK(make(CameraModel::pinhole, 0, K, none) == "camera size: expected positive width and height, got 0 x 480");
+    BOOST_CHECK(make(CameraModel::pinhole, 0, K, none) ==
+                "camera size: expected positive width and height, got 0 x 480");
     BOOST_CHECK(make(CameraModel::equidistant, 640, K, nan).starts_with("camera distortion: expected finite"));
-    BOOST_CHECK(make(CameraModel::pinhole, 640, intrinsics(-500, 510, 320, 240), none).starts_with("camera K: expected positive focal"));
-    BOOST_CHECK(make(CameraModel::pinhole, 640, intrinsics(kInf, 510, 320, 240), none).starts_with("camera K: expected positive focal"));
-    BOOST_CHECK(make(CameraModel::pinhole, 640, intrinsics(500, 510, kNaN, 240), none).starts_with("camera K: expected a finite"));
+    BOOST_CHECK(make(CameraModel::pinhole, 640, intrinsics(-500, 510, 320, 240), none)
+                    .starts_with("camera K: expected positive focal"));
+    BOOST_CHECK(make(CameraModel::pinhole, 640, intrinsics(kInf, 510, 320, 240), none)
+                    .starts_with("camera K: expected positive focal"));
+    BOOST_CHECK(make(CameraModel::pinhole, 640, intrinsics(500, 510, kNaN, 240), none)
+                    .starts_with("camera K: expected a finite"));
     Mat33 skew = K;
     skew(0, 1) = 1.0;
     BOOST_CHECK(make(CameraModel::pinhole, 640, skew, none).starts_with("camera K: expected [[fx"));

@@ -57,7 +57,8 @@ BOOST_AUTO_TEST_CASE(log_inverts_exp) {
     Random random(3);
     for (int i = 0; i < 500; ++i) {
         Vec6 xi = random.vector<6>();
-        const double angle = i % 2 == 0 ? std::pow(10.0, random.uniform(-14.0, 0.0)) : std::numbers::pi - std::pow(10.0, random.uniform(-10.0, 0.0));
+        const double angle = i % 2 == 0 ? std::pow(10.0, random.uniform(-14.0, 0.0))
+                                        : std::numbers::pi - std::pow(10.0, random.uniform(-10.0, 0.0));
         xi.tail<3>() *= angle / xi.tail<3>().norm();
         CHECK_NEAR(SE3::exp(xi).log(), xi, 2e-14);
     }

@@ -50,7 +50,8 @@ BOOST_AUTO_TEST_CASE(exp_is_the_matrix_exponential) {
 BOOST_AUTO_TEST_CASE(log_inverts_exp) {
     Random random(2);
     for (int i = 0; i < 500; ++i) {
-        const double angle = i % 2 == 0 ? std::pow(10.0, random.uniform(-15.0, 0.0)) : kPi - std::pow(10.0, random.uniform(-12.0, 0.0));
+        const double angle =
+            i % 2 == 0 ? std::pow(10.0, random.uniform(-15.0, 0.0)) : kPi - std::pow(10.0, random.uniform(-12.0, 0.0));
         const Vec3 phi = random.vector<3>().normalized() * angle;
         CHECK_NEAR(so3::log(so3::exp(phi)), phi, 4e-15 + 4e-15 * angle);
     }
@@ -76,7 +77,8 @@ BOOST_AUTO_TEST_CASE(left_jacobian_is_the_integral) {
         Mat33 integral = Mat33::Zero();  // Gauss-Legendre, 3 points on 200 intervals: error far below rounding
         for (int k = 0; k < 200; ++k) {
             const double centre = (k + 0.5) / 200.0, offset = std::sqrt(0.6) / 400.0;
-            integral += (5.0 * so3::exp((centre - offset) * phi) + 8.0 * so3::exp(centre * phi) + 5.0 * so3::exp((centre + offset) * phi)) /
+            integral += (5.0 * so3::exp((centre - offset) * phi) + 8.0 * so3::exp(centre * phi) +
+                         5.0 * so3::exp((centre + offset) * phi)) /
                         (18.0 * 200.0);
         }
         CHECK_NEAR(so3::left_jacobian(phi), integral, 1e-13);

@@ -19,7 +19,7 @@ BOOST_AUTO_TEST_CASE(by_hand) {
     CHECK_NEAR(loss.rho(0.0), 0.0, 0.0);
     CHECK_NEAR(loss.rho(3.0), 3.0, 0.0);
     CHECK_NEAR(loss.rho(4.0), 4.0, 0.0);
-    CHECK_NEAR(loss.rho(8.0), 6.0, 0.0);   // 4 (2 - 4 / 8)
+    CHECK_NEAR(loss.rho(8.0), 6.0, 0.0);  // 4 (2 - 4 / 8)
     CHECK_NEAR(loss.weight(3.0), 1.0, 0.0);
     CHECK_NEAR(loss.weight(8.0), 0.25, 0.0);  // (4 / 8)^2
     CHECK_NEAR(loss.rho(1e300), loss.bound(), 1e-12);
@@ -46,7 +46,8 @@ BOOST_AUTO_TEST_CASE(concave_bounded_and_redescending) {
         BOOST_CHECK(loss.rho(s) > last_rho && loss.rho(s) < loss.bound());
         BOOST_CHECK(loss.weight(s) <= last_weight && loss.weight(s) > 0.0);
         // The tangent lies above the loss: what makes the weighted quadratic a majorant.
-        for (double t = 0.1; t < 1e6; t *= 7.0) BOOST_CHECK(loss.rho(t) <= loss.rho(s) + loss.weight(s) * (t - s) + 1e-12 * t);
+        for (double t = 0.1; t < 1e6; t *= 7.0)
+            BOOST_CHECK(loss.rho(t) <= loss.rho(s) + loss.weight(s) * (t - s) + 1e-12 * t);
         last_rho = loss.rho(s);
         last_weight = loss.weight(s);
     }

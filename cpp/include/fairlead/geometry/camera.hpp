@@ -22,8 +22,9 @@ struct Camera {
     int height = 0;
     double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
     std::array<double, 8> distortion{};
-    double min_depth = 1e-6;      ///< [m] points nearer than this (along z) are not projected
-    double radius_limit = -1.0;   ///< where the distortion folds back: tan theta [-], equidistant theta [rad]; docs/cameras.md eq. (7)
+    double min_depth = 1e-6;  ///< [m] points nearer than this (along z) are not projected
+    double radius_limit =
+        -1.0;  ///< where the distortion folds back: tan theta [-], equidistant theta [rad]; docs/cameras.md eq. (7)
 
     /// z = pi(p_camera) [px]. False, z untouched, if depth < min_depth or not finite, or beyond the monotonic
     /// part of the distortion (where the model folds back onto the image).
@@ -43,7 +44,8 @@ struct Camera {
         if (model != CameraModel::pinhole) return project_distorted(p_camera, z, &J);
         if (!project(p_camera, z)) return false;
         const double inverse_depth = 1.0 / p_camera.z();
-        J << fx * inverse_depth, 0.0, (cx - z.x()) * inverse_depth, 0.0, fy * inverse_depth, (cy - z.y()) * inverse_depth;
+        J << fx * inverse_depth, 0.0, (cx - z.x()) * inverse_depth, 0.0, fy * inverse_depth,
+            (cy - z.y()) * inverse_depth;
         return true;
     }
 
@@ -58,7 +60,8 @@ struct Camera {
 [[nodiscard]] int distortion_size(CameraModel model) noexcept;
 
 /// The way to build a camera: sets radius_limit and validates; throws std::invalid_argument as validate does.
-[[nodiscard]] Camera make_camera(CameraModel model, int width, int height, const Mat33& K, std::span<const double> distortion);
+[[nodiscard]] Camera make_camera(CameraModel model, int width, int height, const Mat33& K,
+                                 std::span<const double> distortion);
 
 /// Throws std::invalid_argument, saying which field came with what value, unless the camera is usable.
 void validate(const Camera& camera);
