@@ -7,24 +7,22 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
 from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
+from fairlead.io.options import load_options
 from fairlead.io.run_record import InputFile, RunRecord, input_file
 from fairlead.io.target import load_target
 from fairlead.io.timing import Timing
 from fairlead.progress import ProgressFactory, silent
 from fairlead.sinks.run_folder import RunFolder
-from fairlead.sources.source import ImageSource, ViewSource
+from fairlead.sources.source import Detector, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
+from fairlead.tracker import Refinement, Tracker, TrackerOptions
+from fairlead.tracker import refine as refine_batch
 from fairlead.types import Camera, PoseEstimator, Target, View
-
-if TYPE_CHECKING:
-    from fairlead.detect import Detector
-    from fairlead.tracker import TrackerOptions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,8 +63,6 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
 
 def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSummary:
     """Solve all views of a flight at once. Errors as `track`."""
-    from fairlead.tracker import refine as refine_batch
-
     target, camera = _load(config)
     source = open_views(config, target, camera)
     options = tracker_options(config.options)
@@ -79,12 +75,21 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
                 views.append(view)
                 timings.append(_timing(view, detect_ms, float("nan")))
                 advance(source.work(view))
-        refinement = refine_batch(views, target, camera, options)
+        refinement = _solve(config, views, target, camera, options)
         folder.open_sinks(None)
         for view, estimate, timing in zip(views, refinement.estimates, timings, strict=True):
             folder.write(view, estimate, timing)
         folder.save_model(refinement.model)
     return _finish(config, folder.record)
+
+
+def _solve(
+    config: RefineConfig, views: list[View], target: Target, camera: Camera, options: TrackerOptions
+) -> Refinement:
+    try:
+        return refine_batch(views, target, camera, options)
+    except ValueError as error:
+        raise InputError(config.target, str(error)) from error
 
 
 def evaluate(config: EvaluateConfig) -> Path:
@@ -99,7 +104,7 @@ def evaluate(config: EvaluateConfig) -> Path:
 class DetectedViews:
     """The views that a detector finds in a sequence of images."""
 
-    def __init__(self, images: ImageSource, detector: "Detector") -> None:
+    def __init__(self, images: ImageSource, detector: Detector) -> None:
         self._images = images
         self._detector = detector
 
@@ -135,10 +140,17 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
 
 
 def make_estimator(config: TrackConfig, target: Target, camera: Camera) -> PoseEstimator:
-    """The estimator of a method. Raises InputError for an option file that cannot be used."""
-    if config.method == "map":
-        from fairlead.tracker import Tracker
+    """The estimator of a method. Raises InputError for a target or option file that it cannot use."""
+    try:
+        return _estimator(config, target, camera)
+    except (InputError, UsageError):
+        raise
+    except ValueError as error:
+        raise InputError(config.target, str(error)) from error
 
+
+def _estimator(config: TrackConfig, target: Target, camera: Camera) -> PoseEstimator:
+    if config.method == "map":
         return Tracker(target, camera, tracker_options(config.options))
     if config.options is not None:
         raise UsageError(f"--options: method {config.method} has none")
@@ -151,11 +163,8 @@ def make_estimator(config: TrackConfig, target: Target, camera: Camera) -> PoseE
     return EpnpTracker(target, camera)
 
 
-def tracker_options(path: Path | None) -> "TrackerOptions":
+def tracker_options(path: Path | None) -> TrackerOptions:
     """The options of a file, or the defaults."""
-    from fairlead.io.options import load_options
-    from fairlead.tracker import TrackerOptions
-
     return TrackerOptions() if path is None else load_options(path, TrackerOptions())
 
 

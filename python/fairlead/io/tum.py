@@ -18,9 +18,9 @@ def tum_line(stamp_ns: int, T_camera_target: Matrix4) -> str:
     return f"{sign}{seconds}.{nanoseconds:09d} {cells}\n"
 
 
-def write_trajectory_tum(path: Path | str, poses: Iterable[Estimate | TruthPose]) -> None:
+def write_trajectory_tum(path: Path | str, trajectory: Iterable[Estimate | TruthPose]) -> None:
     """Write a trajectory; estimates without a pose are left out."""
     with Path(path).open("w", encoding="utf-8", newline="\n") as stream:
-        for pose in poses:
+        for pose in trajectory:
             if isinstance(pose, TruthPose) or pose.ok:
                 stream.write(tum_line(pose.stamp_ns, pose.T_camera_target))

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the records check of their fields; each function raises ValueError that names the field."""
+
+import operator
+from typing import SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+RIGID_TOLERANCE = 1e-6
+"""Largest deviation of R^T R from I that still counts as a rotation [-]."""
+
+
+def frozen_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> np.ndarray:
+    """Copy to a read-only float64 array of this shape; ValueError names the field otherwise."""
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: expected numbers of shape {shape}, got {type(values).__name__}") from error
+    if array.shape != shape:
+        raise ValueError(f"{name}: expected shape {shape}, got {array.shape}")
+    array.setflags(write=False)
+    return array
+
+
+def integer(value: SupportsIndex, name: str) -> int:
+    """A whole number of 64 bits."""
+    try:
+        whole = operator.index(value)
+    except TypeError as error:
+        raise ValueError(f"{name}: expected an integer, got {value!r}") from error
+    if not -(2**63) <= whole < 2**63:
+        raise ValueError(f"{name}: expected a 64-bit integer, got {whole}")
+    return whole
+
+
+def names(values: tuple[str, ...], name: str) -> tuple[str, ...]:
+    """Texts, none of them empty."""
+    texts = tuple(values)
+    for value in texts:
+        if not isinstance(value, str) or not value:  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise ValueError(f"{name}: expected non-empty text, got {value!r}")
+    return texts
+
+
+def finite(array: np.ndarray, name: str) -> None:
+    """Neither NaN nor infinite."""
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name}: expected finite numbers, got {array.tolist()}")
+
+
+def positive(value: float, name: str) -> None:
+    """Finite and above 0."""
+    if not (np.isfinite(value) and value > 0.0):
+        raise ValueError(f"{name}: expected a positive number, got {value}")
+
+
+def assign(record: object, **values: object) -> None:
+    """Set fields of a frozen record while it is being made."""
+    for name, value in values.items():
+        object.__setattr__(record, name, value)
+
+
+def choice(value: str, allowed: tuple[str, ...], name: str) -> None:
+    """One of the allowed words."""
+    if value not in allowed:
+        raise ValueError(f"{name}: expected one of {', '.join(allowed)}, got {value!r}")
+
+
+def is_covariance(matrix: np.ndarray, tolerance: float = 1e-9) -> bool:
+    """Finite, symmetric and positive semidefinite, judged on the correlations, so that units may be mixed.
+
+    Variances below 1e-14 of the largest count as zero; the smallest eigenvalue may be -tolerance x size.
+    """
+    variances = np.diag(matrix)
+    if not np.isfinite(matrix).all() or variances.min(initial=0.0) < 0.0:
+        return False
+    largest = float(variances.max(initial=0.0))
+    if largest == 0.0:
+        return not matrix.any()
+    scale = np.sqrt(variances + 1e-14 * largest)
+    correlations = matrix / np.outer(scale, scale)
+    if np.abs(correlations - correlations.T).max() > tolerance:
+        return False
+    try:
+        np.linalg.cholesky(correlations + tolerance * matrix.shape[0] * np.eye(matrix.shape[0]))
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def is_rigid(T: np.ndarray, tolerance: float = RIGID_TOLERANCE) -> bool:
+    """R^T R = I and det R = +1 to `tolerance`, last row 0 0 0 1, finite."""
+    if not np.isfinite(T).all() or not np.array_equal(T[3], [0.0, 0.0, 0.0, 1.0]):
+        return False
+    R = T[:3, :3]
+    return bool(np.abs(R.T @ R - np.eye(3)).max() <= tolerance and np.linalg.det(R) > 0.0)
