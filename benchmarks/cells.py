@@ -103,11 +103,17 @@ def _method_row(name: str, flight: Simulation) -> dict[str, np.ndarray]:
 
 
 def run_cell(cell: Cell, data: str, runs: int, names: list[str]) -> dict[str, dict[str, np.ndarray]]:
-    """Scores of these methods ("bound" is one of them): arrays (runs, views or landmarks or 1)."""
+    """Scores of these methods ("bound" is one of them): arrays (runs, views or landmarks or 1).
+
+    The bound depends on the truth alone, which all flights of a cell share.
+    """
     rows: dict[str, list[dict[str, np.ndarray]]] = {name: [] for name in names}
     for flight in flights(cell, data, range(runs)):
         for name in names:
-            rows[name].append(_bound_row(cell, flight) if name == "bound" else _method_row(name, flight))
+            if name == "bound":
+                rows[name].append(rows[name][0] if rows[name] else _bound_row(cell, flight))
+            else:
+                rows[name].append(_method_row(name, flight))
     return {name: {key: np.stack([row[key] for row in rows[name]]) for key in rows[name][0]} for name in names}
 
 

@@ -10,7 +10,6 @@ from scipy.optimize import least_squares
 
 from reference.cameras import Project
 from reference.views import centre_and_rotation, move, xi_from_step
-from reference.volume import structure_volume
 
 
 def robust_loss(s: np.ndarray, a: float) -> np.ndarray:
@@ -41,8 +40,6 @@ class Problem:
     loss_threshold: float = np.inf
     noise_factor: float = 1.0
     prior_factor: float = 1.0
-    integrate_landmarks: bool = False
-    """Whether the poses are those of the posterior with the landmarks integrated out, docs/bound.md eq. (19)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,7 +123,7 @@ class _Residuals:
 
 
 def solve(problem: Problem, X: np.ndarray, T_camera_target: np.ndarray, iterations: int = 200) -> Solution:
-    """Minimise E from (X, T) by scipy's trust-region reflective method, docs/bound.md eq. (1) or (19).
+    """Minimise E from (X, T) by scipy's trust-region reflective method, docs/bound.md eq. (1).
 
     Rotation vectors are taken about the poses of the last restart; three restarts keep them small. The covariance is
     NaN where there is no prior: seven directions are then free.
@@ -148,10 +145,7 @@ def solve(problem: Problem, X: np.ndarray, T_camera_target: np.ndarray, iteratio
 
 
 def _normal_equations(problem: Problem, X: np.ndarray, T: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-    """Hessian with the robust weights frozen, gradient and cost, over (X, step of each view about T).
-
-    The Hessian is that of eq. (1) also where the landmarks are integrated out: the volume changes slowly.
-    """
+    """Hessian with the robust weights frozen, gradient and cost, over (X, step of each view about T)."""
     system, a = _Residuals(problem, T), problem.loss_threshold
     x = np.r_[X.ravel(), np.zeros(6 * len(T))]
     u, d = system.images(x, np.inf), system.prior(x)
@@ -163,12 +157,6 @@ def _normal_equations(problem: Problem, X: np.ndarray, T: np.ndarray) -> tuple[n
     gradient = J.T @ (w[:, None] * u).ravel()
     gradient[: X.size] += system.A.T @ d
     cost = float(0.5 * (robust_loss(s, a).sum() + d @ d))
-    if problem.integrate_landmarks:
-        whiteners = np.sqrt(w)[:, None, None] * system.W
-        volume, slope = structure_volume(
-            problem.project, system.A.T @ system.A, whiteners, (problem.view, problem.landmark), (X, T)
-        )
-        cost, gradient = cost + volume, gradient + slope
     return H, gradient, cost
 
 

@@ -13,7 +13,6 @@ from reference.bound import bayesian_bound
 from reference.cameras import make_projection, projection_jacobian
 from reference.posterior import Problem, robust_loss, robust_weight, solve
 from reference.views import move, xi_from_step
-from reference.volume import structure_volume
 
 
 @pytest.fixture(scope="module")
@@ -142,18 +141,3 @@ def test_loss_is_smooth():
     slope = (robust_loss(s + 1e-6, a) - robust_loss(s - 1e-6, a)) / 2e-6
     np.testing.assert_allclose(slope, robust_weight(s, a), atol=1e-6)
     assert robust_loss(s, a).max() < 2 * a
-
-
-def test_volume_gradient_along_scale(flight, project):
-    """docs/bound.md eq. (20): along a common scale L falls by the number of coordinates that the images determine.
-
-    Without a prior they determine all 60 (at known poses); six digits of the gradient.
-    """
-    seen = observations(flight)
-    X, T = flight.X_true, flight.T_true
-    whiteners = np.broadcast_to(np.eye(2), (200, 2, 2))
-    where = (seen["view"], seen["landmark"])
-    _, gradient = structure_volume(project, np.zeros((60, 60)), whiteners, where, (X, T))
-    centres = -np.einsum("kji,kj->ki", T[:, :3, :3], T[:, :3, 3])
-    direction = np.concatenate([X.ravel(), np.hstack([centres, np.zeros((10, 3))]).ravel()])
-    assert gradient @ direction == pytest.approx(-60.0, rel=1e-5)

@@ -4,7 +4,7 @@
 
 from fairlead.simulate.arc import ArcScenario, simulate_arc
 from fairlead.simulate.errors import ModelError, ObservationError
-from fairlead.simulate.orbit import OrbitScenario, orbit_truth, orbit_views
+from fairlead.simulate.orbit import OrbitScenario, orbit_told, orbit_views
 from fairlead.simulate.trajectory import arc_centres, look_at
 from fairlead.simulate.truth import Simulation, project_all
 
@@ -16,7 +16,7 @@ __all__ = [
     "Simulation",
     "arc_centres",
     "look_at",
-    "orbit_truth",
+    "orbit_told",
     "orbit_views",
     "project_all",
     "simulate_arc",

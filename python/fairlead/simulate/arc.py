@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The published simulation: a camera on an arc about the ship's stern, range 1 km (experiment 1 of Guo et al. 2024)."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from fairlead.simulate.errors import ModelError, ObservationError
 from fairlead.simulate.trajectory import arc_centres, look_at
-from fairlead.simulate.truth import Simulation, project_all
+from fairlead.simulate.truth import Simulation, known_exactly, project_all, roughly_known
 from fairlead.types import Camera, Points3, Poses, Target, Vector3, View
 
 
@@ -23,7 +23,7 @@ class ArcScenario:
 
     Azimuths are pi - angle / 2 ... pi + angle / 2 in equal steps: the arc is symmetric about dead astern, from where a
     landing aircraft comes. (The publication leaves open where its arc starts.) The camera looks at the middle of the
-    *told* landmarks, so its path does not depend on the draw of the true ones.
+    true landmarks.
     """
 
     angle_deg: float = 90.0
@@ -44,34 +44,39 @@ class ArcScenario:
                 f"arc: expected at least one view, 0..360 degrees, a positive range and interval, got {self}"
             )
 
-    def poses(self, X0: Points3) -> Poses:
+    def poses(self, X_true: Points3) -> Poses:
         """True T_camera_target of every view, (k, 4, 4)."""
         half = 0.5 * np.radians(self.angle_deg)
         azimuths = np.pi + np.linspace(-half, half, self.views)
         centres = arc_centres(azimuths, self.range_m, float(np.radians(self.elevation_deg)))
-        return look_at(centres, box_centre(X0))
+        return look_at(centres, box_centre(X_true))
 
 
 def simulate_arc(target: Target, camera: Camera, scenario: ArcScenario, rng: np.random.Generator) -> Simulation:
-    """Draw one flight: true landmarks from the prior about `target`, observations of all landmarks in all views.
+    """Draw one flight: a rough model about the true `target`, observations of all true landmarks in all views.
 
     Parameters
     ----------
-    target : its positions are X0; its covariance is replaced by what the scenario tells
+    target : its positions are the truth; its covariance is replaced by what the scenario tells
     camera : landmarks outside the image are observed all the same
     scenario : geometry and errors
-    rng : the only source of randomness; same state, same flight. Scenarios that differ in what is told, or in the
-        outliers, but not in the rest, see the same landmarks and the same noise.
+    rng : the only source of randomness; same state, same flight. Scenarios that differ in what is told of the errors,
+        or in the outliers, but not in the rest, have the same model error and the same noise.
     """
-    X0 = target.positions
-    X = scenario.model.draw(X0, rng)
-    T = scenario.poses(X0)
+    X = target.positions
+    X0 = scenario.model.draw(X, rng)
+    T = scenario.poses(X)
     pixels = scenario.observation.draw(project_all(camera, X, T), rng)
-    covariances = scenario.observation.told_covariances(len(X0))
+    covariances = scenario.observation.told_covariances(len(X))
     interval_ns = round(scenario.interval_s * 1e9)
     views = tuple(
         View(frame=k, stamp_ns=k * interval_ns, landmarks=target.landmarks, pixels=z, covariances=covariances)
         for k, z in enumerate(pixels)
     )
-    told = replace(target, covariance=scenario.model.told_covariance(X0))
-    return Simulation(camera=camera, target_told=told, views=views, X_true=X, T_true=T)
+    return Simulation(
+        camera=camera,
+        target_told=roughly_known(target, X0, scenario.model.told_covariance(X0)),
+        views=views,
+        target_true=known_exactly(target),
+        T_true=T,
+    )

@@ -11,7 +11,11 @@ from fairlead.types import ModelCovariance, PixelCovariances, Points3
 
 @dataclass(frozen=True, kw_only=True)
 class ModelError:
-    """True landmarks X ~ N(X0, P0), P0 = diag(sigma_m^2) + scale_sigma^2 x0 x0^T, x0 = X0 about its centroid."""
+    """The estimator is told X0 ~ N(X, P0), P0 = diag(sigma_m^2) + scale_sigma^2 x x^T, x = X about its centroid.
+
+    The truth X is given and what is told scatters about it, as when somebody has measured the target or drawn it from
+    memory. (Where the truth scatters about a drawing, the same posterior has another bias: docs/bound.md.)
+    """
 
     sigma_m: float = 1.0
     """One standard deviation of each coordinate of each landmark [m]."""
@@ -24,13 +28,13 @@ class ModelError:
         if not (self.sigma_m >= 0.0 and self.scale_sigma >= 0.0 and self.told_factor > 0.0):
             raise ValueError(f"model error: expected sigmas >= 0 and a factor > 0, got {self}")
 
-    def draw(self, X0: Points3, rng: np.random.Generator) -> Points3:
-        """True landmarks [m]: one draw of N(X0, P0)."""
-        independent = self.sigma_m * rng.standard_normal(X0.shape)
-        return X0 + independent + self.scale_sigma * rng.standard_normal() * (X0 - X0.mean(axis=0))
+    def draw(self, X_true: Points3, rng: np.random.Generator) -> Points3:
+        """Landmarks that the estimator is told, X0 [m]."""
+        independent = self.sigma_m * rng.standard_normal(X_true.shape)
+        return X_true + independent + self.scale_sigma * rng.standard_normal() * (X_true - X_true.mean(axis=0))
 
     def told_covariance(self, X0: Points3) -> ModelCovariance:
-        """told_factor^2 P0, (3n, 3n) [m^2]."""
+        """told_factor^2 P0 at the told landmarks, (3n, 3n) [m^2]."""
         about = (X0 - X0.mean(axis=0)).ravel()
         P0 = self.sigma_m**2 * np.eye(about.size) + self.scale_sigma**2 * np.outer(about, about)
         return self.told_factor**2 * P0

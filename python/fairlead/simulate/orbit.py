@@ -10,7 +10,7 @@ import numpy as np
 from fairlead.simulate.arc import box_centre
 from fairlead.simulate.errors import ModelError, ObservationError
 from fairlead.simulate.trajectory import arc_centres, look_at
-from fairlead.simulate.truth import project_all
+from fairlead.simulate.truth import project_all, roughly_known
 from fairlead.types import Camera, Points3, Poses, Target, View
 
 
@@ -26,28 +26,28 @@ class OrbitScenario:
     model: ModelError = field(default_factory=ModelError)
     observation: ObservationError = field(default_factory=ObservationError)
 
-    def poses(self, X0: Points3, frames: np.ndarray) -> Poses:
+    def poses(self, X_true: Points3, frames: np.ndarray) -> Poses:
         """True T_camera_target of these frames, (k, 4, 4)."""
         elevation = float(np.radians(self.elevation_deg))
         rate = self.speed_m_s / (self.range_m * np.cos(elevation))
         azimuths = np.pi - rate * frames / self.rate_hz
-        return look_at(arc_centres(azimuths, self.range_m, elevation), box_centre(X0))
+        return look_at(arc_centres(azimuths, self.range_m, elevation), box_centre(X_true))
 
 
-def orbit_truth(target: Target, scenario: OrbitScenario, rng: np.random.Generator) -> Points3:
-    """One draw of the true landmarks, (n, 3) [m]."""
-    return scenario.model.draw(target.positions, rng)
+def orbit_told(target: Target, scenario: OrbitScenario, rng: np.random.Generator) -> Target:
+    """What is told of the true `target`: one draw of the rough model."""
+    X0 = scenario.model.draw(target.positions, rng)
+    return roughly_known(target, X0, scenario.model.told_covariance(X0))
 
 
-def orbit_views(
-    target: Target, camera: Camera, scenario: OrbitScenario, X_true: Points3, rng: np.random.Generator
-) -> Iterator[View]:
-    """The views in order of time. Memory does not grow with the number of frames."""
+def orbit_views(target: Target, camera: Camera, scenario: OrbitScenario, rng: np.random.Generator) -> Iterator[View]:
+    """Views of the true `target` in order of time. Memory does not grow with the number of frames."""
+    X_true = target.positions
     covariances = scenario.observation.told_covariances(len(X_true))
     batch = 250
     for start in range(0, scenario.frames, batch):
         frames = np.arange(start, min(start + batch, scenario.frames))
-        T = scenario.poses(target.positions, frames)
+        T = scenario.poses(X_true, frames)
         pixels = scenario.observation.draw(project_all(camera, X_true, T), rng)
         for frame, z in zip(frames, pixels, strict=True):
             stamp_ns = round(int(frame) * 1e9 / scenario.rate_hz)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fairlead import geometry
-from fairlead.types import Camera, Points3, Poses, Target, TruthPose, View
+from fairlead.types import Camera, ModelCovariance, Points3, Poses, Target, TruthPose, View
 
 
 def project_all(camera: Camera, X: Points3, T_camera_target: Poses) -> np.ndarray:
@@ -18,26 +18,21 @@ def project_all(camera: Camera, X: Points3, T_camera_target: Poses) -> np.ndarra
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Simulation:
-    """Truth (`X_true`, `T_true`) and what is told (`target_told`, `views`). An estimator gets the latter only."""
+    """Truth (`target_true`, `T_true`) and what is told (`target_told`, `views`). An estimator gets the latter only."""
 
     camera: Camera
     target_told: Target
     """X0 and the P0 that the estimator is to believe."""
     views: tuple[View, ...]
-    X_true: Points3
-    """(n, 3) [m], order as in the target."""
+    target_true: Target
+    """The true landmarks, without uncertainty."""
     T_true: Poses
     """(k, 4, 4) T_camera_target, order as in `views`."""
 
     @property
-    def target_true(self) -> Target:
-        """The target with its true landmarks and no uncertainty."""
-        return replace(
-            self.target_told,
-            positions=self.X_true,
-            covariance=np.zeros_like(self.target_told.covariance),
-            touchdown=None,
-        )
+    def X_true(self) -> Points3:
+        """(n, 3) [m], order as in the target."""
+        return self.target_true.positions
 
     @property
     def truth(self) -> tuple[TruthPose, ...]:
@@ -46,3 +41,13 @@ class Simulation:
             TruthPose(frame=view.frame, stamp_ns=view.stamp_ns, T_camera_target=T)
             for view, T in zip(self.views, self.T_true, strict=True)
         )
+
+
+def known_exactly(target: Target) -> Target:
+    """The same landmarks with no uncertainty."""
+    return replace(target, covariance=np.zeros_like(target.covariance))
+
+
+def roughly_known(target: Target, positions: Points3, covariance: ModelCovariance) -> Target:
+    """What is told of a target: rough landmarks and their covariance, and no touchdown point that only truth knows."""
+    return replace(target, positions=positions, covariance=covariance, touchdown=None)

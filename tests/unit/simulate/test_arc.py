@@ -12,7 +12,7 @@ from fairlead.simulate import (
     ModelError,
     ObservationError,
     OrbitScenario,
-    orbit_truth,
+    orbit_told,
     orbit_views,
     simulate_arc,
 )
@@ -50,29 +50,30 @@ def test_whole_ship_is_in_every_image(frigate):
 
 
 def test_truth_and_told_differ_and_truth_explains_the_images(frigate):
-    """Residuals of the truth are the noise (400 coordinates, 4 standard errors); what is told is the table."""
+    """Residuals of the truth are the noise (400 coordinates, 4 standard errors); the table is the truth."""
     scenario = ArcScenario(
         observation=ObservationError(sigma_px=2.0, told_factor=0.5), model=ModelError(told_factor=3.0)
     )
     flight = simulate_arc(*frigate, scenario, np.random.default_rng(5))
-    np.testing.assert_array_equal(flight.target_told.positions, frigate[0].positions)
+    np.testing.assert_array_equal(flight.X_true, frigate[0].positions)
+    assert not flight.target_true.covariance.any()
+    assert (flight.target_told.positions - flight.X_true).std() == pytest.approx(1.0, rel=4 / np.sqrt(120))
     np.testing.assert_array_equal(flight.target_told.covariance, 9.0 * np.eye(60))
+    assert flight.target_told.touchdown is None
     np.testing.assert_array_equal(flight.views[3].covariances[7], np.eye(2))
     p = np.einsum("kij,nj->kni", flight.T_true[:, :3, :3], flight.X_true) + flight.T_true[:, None, :3, 3]
     z = 1910.0 * p[..., :2] / p[..., 2:] + 511.5
     noise = np.stack([view.pixels for view in flight.views]) - z
     assert noise.std() == pytest.approx(2.0, rel=4 / np.sqrt(800))
-    np.testing.assert_array_equal(flight.target_true.positions, flight.X_true)
-    assert not flight.target_true.covariance.any()
     assert [pose.stamp_ns for pose in flight.truth] == [view.stamp_ns for view in flight.views]
 
 
 def test_same_seed_same_flight_whatever_is_told(frigate):
-    """Seeds decide landmarks and noise; neither outliers nor what is told change them."""
+    """Seeds decide the model error and the noise; the told sigmas do not change them."""
     base = ArcScenario()
     told = replace(base, model=ModelError(told_factor=3.0), observation=ObservationError(told_factor=2.0))
     a, b = (simulate_arc(*frigate, scenario, np.random.default_rng([4, 2])) for scenario in (base, told))
-    np.testing.assert_array_equal(a.X_true, b.X_true)
+    np.testing.assert_array_equal(a.target_told.positions, b.target_told.positions)
     for one, other in zip(a.views, b.views, strict=True):
         np.testing.assert_array_equal(one.pixels, other.pixels)
 
@@ -83,8 +84,9 @@ def test_orbit_streams_the_same_views_in_any_length(frigate):
     for frames in (300, 600):
         rng = np.random.default_rng(1)
         scenario = OrbitScenario(frames=frames)
-        X = orbit_truth(target, scenario, rng)
-        views[frames] = list(orbit_views(target, camera, scenario, X, rng))
+        told = orbit_told(target, scenario, rng)
+        views[frames] = list(orbit_views(target, camera, scenario, rng))
+        assert not np.array_equal(told.positions, target.positions)
     assert [view.frame for view in views[600]] == list(range(600))
     assert views[600][25].stamp_ns == 1_000_000_000
     for short, long in zip(views[300][:250], views[600][:250], strict=True):
