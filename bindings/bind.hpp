@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace fairlead::bindings {
+
+void bind_geometry(nanobind::module_& m);  ///< Camera, projection
+void bind_pnp(nanobind::module_& m);       ///< minimal and refined poses
+void bind_tracker(nanobind::module_& m);   ///< Tracker, refine, solve_window
+
+}  // namespace fairlead::bindings
