@@ -55,7 +55,7 @@ def load_target(path: Path | str) -> Target:
 
 
 def prior_covariance(positions: Points3, sigmas_m: Points3, scale_sigma: float) -> ModelCovariance:
-    """P0 = diag(sigma^2) + scale_sigma^2 x0 x0^T, x0 about the centroid, DESIGN section 2.
+    """P0 = diag(sigma^2) + scale_sigma^2 x0 x0^T, x0 about the centroid, docs/files.md eq. (1).
 
     Parameters
     ----------
