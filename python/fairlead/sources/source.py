@@ -5,7 +5,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import UInt8
@@ -26,6 +26,7 @@ class ImageFrame:
     image: Image
 
 
+@runtime_checkable
 class ViewSource(Protocol):
     """Frames that are observed already."""
 
@@ -40,6 +41,7 @@ class ViewSource(Protocol):
         ...
 
 
+@runtime_checkable
 class ImageSource(Protocol):
     """Frames that a detector has to look at."""
 
@@ -50,6 +52,7 @@ class ImageSource(Protocol):
         ...
 
 
+@runtime_checkable
 class Detector(Protocol):
     """Finds the landmarks of the target in an image."""
 

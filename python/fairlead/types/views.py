@@ -3,7 +3,7 @@
 """View in, estimate out."""
 
 from dataclasses import dataclass
-from typing import Protocol, get_args
+from typing import Protocol, get_args, runtime_checkable
 
 import numpy as np
 
@@ -93,6 +93,7 @@ class TruthPose:
         assign(self, T_camera_target=T)
 
 
+@runtime_checkable
 class PoseEstimator(Protocol):
     """What `map`, `window` and `epnp` share: a view in, an estimate out; bad data never raise."""
 
