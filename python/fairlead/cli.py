@@ -35,8 +35,7 @@ class Stopped(KeyboardInterrupt):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _stop)
+    before = {number: signal.signal(number, _stop) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         config: Config = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
         return _run(config)
@@ -46,10 +45,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if error.errno is None:
             raise
         place = f"{error.filename}: " if error.filename else ""
-        full = " (what was written stays readable)" if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
+        full = " (what was written stays readable)" if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) else ""
         return _complain(f"{place}{error.strerror}{full}", 2)
     except Stopped as stop:
         return _complain("stopped; what was written stays readable", 128 + stop.number)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _stop(number: int, frame: FrameType | None) -> None:

@@ -12,17 +12,20 @@ from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConf
 from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
 from fairlead.io.options import load_options
-from fairlead.io.run_record import InputFile, RunRecord, input_file
+from fairlead.io.run_record import RunRecord, input_file
 from fairlead.io.target import load_target
 from fairlead.io.timing import Timing
 from fairlead.progress import ProgressFactory, silent
-from fairlead.sinks.run_folder import RunFolder
+from fairlead.sinks.run_folder import WRITTEN, RunFolder
 from fairlead.sources.source import Detector, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
 from fairlead.tracker import Refinement, Tracker, TrackerOptions
 from fairlead.tracker import refine as refine_batch
 from fairlead.types import Camera, PoseEstimator, Target, View
+
+MIN_LANDMARKS = 4
+"""Fewer do not determine a pose."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,9 +50,11 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
     """
     target, camera = _load(config)
     source = open_views(config, target, camera)
-    estimator = make_estimator(config, target, camera)
+    options = tracker_options(config.options)
+    estimator = make_estimator(config, options, target, camera)
     timed_views = _timed(source, config.source)
-    with RunFolder(config.output, _record("track", config), target, camera) as folder:
+    record = _record("track", config, options if config.method == "map" else None)
+    with RunFolder(config.output, record, target, camera) as folder:
         folder.open_sinks(estimator)
         with progress("track", source.count) as advance:
             for view, detect_ms in timed_views:
@@ -67,7 +72,7 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
     source = open_views(config, target, camera)
     options = tracker_options(config.options)
     timed_views = _timed(source, config.source)
-    with RunFolder(config.output, _record("refine", config), target, camera) as folder:
+    with RunFolder(config.output, _record("refine", config, options), target, camera) as folder:
         views: list[View] = []
         timings: list[Timing] = []
         with progress("read", source.count) as advance:
@@ -139,19 +144,19 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
     return DetectedViews(ImageFolderSource(path, camera, fps=config.fps), detector_from_spec(config.detector, target))
 
 
-def make_estimator(config: TrackConfig, target: Target, camera: Camera) -> PoseEstimator:
-    """The estimator of a method. Raises InputError for a target or option file that it cannot use."""
+def make_estimator(config: TrackConfig, options: TrackerOptions, target: Target, camera: Camera) -> PoseEstimator:
+    """The estimator of a method. Raises InputError for a target or options that it cannot use."""
     try:
-        return _estimator(config, target, camera)
+        return _estimator(config, options, target, camera)
     except (InputError, UsageError):
         raise
     except ValueError as error:
         raise InputError(config.target, str(error)) from error
 
 
-def _estimator(config: TrackConfig, target: Target, camera: Camera) -> PoseEstimator:
+def _estimator(config: TrackConfig, options: TrackerOptions, target: Target, camera: Camera) -> PoseEstimator:
     if config.method == "map":
-        return Tracker(target, camera, tracker_options(config.options))
+        return Tracker(target, camera, options)
     if config.options is not None:
         raise UsageError(f"--options: method {config.method} has none")
     if config.method == "window":
@@ -169,9 +174,16 @@ def tracker_options(path: Path | None) -> TrackerOptions:
 
 
 def _load(config: InputConfig) -> tuple[Target, Camera]:
+    """Target and camera; refuses to write over anything that is read."""
+    for path in _input_paths(config).values():
+        if path.name in WRITTEN and path.resolve().parent == config.output.resolve():
+            raise UsageError(f"--output: {config.output} would write over the input {path}")
     if config.truth is not None and not config.truth.is_file():
         raise InputError(config.truth, "is not there; expected truth.csv")
-    return load_target(config.target), load_camera(config.camera, name=config.camera_name)
+    target = load_target(config.target)
+    if len(target.landmarks) < MIN_LANDMARKS:
+        raise InputError(config.target, f"expected at least {MIN_LANDMARKS} landmarks, got {len(target.landmarks)}")
+    return target, load_camera(config.camera, name=config.camera_name)
 
 
 def _timed(source: ViewSource, path: Path) -> Iterator[tuple[View, float]]:
@@ -194,13 +206,17 @@ def _timing(view: View, detect_ms: float, update_ms: float) -> Timing:
     return Timing(frame=view.frame, stamp_ns=view.stamp_ns, detect_ms=detect_ms, update_ms=update_ms)
 
 
-def _record(command: str, config: InputConfig) -> RunRecord:
-    inputs: list[InputFile] = []
-    for role in ("source", "target", "camera", "options", "truth"):
-        path: Path | None = getattr(config, role)
-        if path is not None:
-            inputs.append(input_file(role, path))
-    return RunRecord(command=command, state="running", options=config, inputs=tuple(inputs))
+def _input_paths(config: InputConfig) -> dict[str, Path]:
+    """Every file that was named, by its role."""
+    paths = {"source": config.source, "target": config.target, "camera": config.camera}
+    more = {"options": config.options, "truth": config.truth}
+    return paths | {role: path for role, path in more.items() if path is not None}
+
+
+def _record(command: str, config: InputConfig, options: TrackerOptions | None) -> RunRecord:
+    inputs = tuple(input_file(role, path) for role, path in _input_paths(config).items())
+    seed = None if options is None else options.seed
+    return RunRecord(command=command, state="running", options=config, inputs=inputs, estimator=options, seed=seed)
 
 
 def _finish(config: InputConfig, record: RunRecord) -> RunSummary:

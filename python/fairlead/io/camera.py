@@ -47,7 +47,9 @@ def load_camera(path: Path | str, *, name: str | None = None) -> Camera:
     if cameras:
         chosen = _choose(list(cameras), name, path)
         return _load_kalibr(cameras[chosen], chosen, path)
-    return _load_matrix_form(document, path)
+    camera = _load_matrix_form(document, path)
+    _choose([camera.name], name, path)
+    return camera
 
 
 def _is_kalibr(value: object) -> bool:

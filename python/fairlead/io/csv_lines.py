@@ -120,8 +120,13 @@ class CsvWriter:
 
     def __init__(self, path: Path | str, columns: Sequence[str]) -> None:
         self._stream = Path(path).open("wb", buffering=0)  # noqa: SIM115 - closed by close()
+        self._path = Path(path)
         self._columns = len(columns)
-        self.write_rows([columns])
+        try:
+            self.write_rows([columns])
+        except OSError:
+            self.close()
+            raise
 
     def write_rows(self, rows: Iterable[Sequence[object]]) -> None:
         """Append rows in one go."""
@@ -138,10 +143,10 @@ class CsvWriter:
         try:
             while data:
                 data = data[self._stream.write(data) :]
-        except OSError:
+        except OSError as error:
             if start is not None:
                 self._cut(start)
-            raise
+            raise OSError(error.errno, error.strerror, str(self._path)) from error
 
     def _cut(self, size: int) -> None:
         try:

@@ -20,7 +20,10 @@ VERSION = 1
 RunState = Literal["running", "done", "interrupted", "failed"]
 
 _PACKAGES = ("fairlead", "numpy", "opencv-python-headless", "pyarrow", "PyYAML", "scipy")
-_KEYS = ("version", "command", "state", "options", "seed", "inputs", "versions", "git", "frames", "frames_with_pose")
+_KEYS = (
+    *("version", "command", "state", "options", "estimator", "seed", "inputs"),
+    *("versions", "git", "frames", "frames_with_pose"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +46,8 @@ class RunRecord:
     options: object
     """The resolved options: a frozen dataclass when written, plain JSON values when read back."""
     inputs: tuple[InputFile, ...]
+    estimator: object = None
+    """The resolved options of the estimator, alike; None where it has none."""
     seed: int | None = None
     frames: int = 0
     frames_with_pose: int = 0
@@ -73,6 +78,7 @@ def write_run_record(path: Path, record: RunRecord) -> None:
         "command": record.command,
         "state": record.state,
         "options": _plain(record.options),
+        "estimator": _plain(record.estimator),
         "seed": record.seed,
         "inputs": [dataclasses.asdict(item) for item in record.inputs],
         "versions": {"python": platform.python_version(), **_versions()},
@@ -110,6 +116,7 @@ def read_run_record(path: Path | str) -> RunRecord:
         command=fields.text("command"),
         state=cast(RunState, fields.text("state")),
         options=fields.get("options"),
+        estimator=fields.get("estimator"),
         seed=None if fields.get("seed") is None else fields.integer("seed"),
         inputs=tuple(inputs),
         frames=fields.integer("frames"),

@@ -21,6 +21,12 @@ from fairlead.types import Camera, Estimate, PoseEstimator, Target, View
 
 _log = logging.getLogger(__name__)
 
+WRITTEN = (
+    *("run.json", "target.toml", "target.npz", "camera.yaml", "observations.csv", "poses.csv", "timing.csv"),
+    *("trajectory.tum", "target_refined.toml", "target_refined.npz", "metrics.json", "report.html"),
+)
+"""Files that a run, and its evaluation, leave in its folder."""
+
 
 class RunFolder:
     """Context manager that owns the files of a run. Raises OSError where they cannot be written."""
@@ -31,6 +37,8 @@ class RunFolder:
         self._sinks: list[Sink] = []
         self._stack = ExitStack()
         path.mkdir(parents=True, exist_ok=True)
+        for name in WRITTEN[4:]:
+            (path / name).unlink(missing_ok=True)
         save_target(path / "target.toml", target)
         save_camera(path / "camera.yaml", camera)
         write_run_record(path / "run.json", record)
