@@ -56,7 +56,6 @@ lint: $(STAMPS)/ruff $(STAMPS)/pyright $(STAMPS)/imports $(STAMPS)/clang-tidy
 .PHONY: stubs
 stubs: setup
 	$(BIN)/python -m nanobind.stubgen --quiet --module fairlead._core --output-file python/fairlead/_core.pyi
-	$(BIN)/ruff check --fix --quiet python/fairlead/_core.pyi || true
 	$(BIN)/ruff format --quiet python/fairlead/_core.pyi
 
 ## lock     resolve the dependencies anew (needs uv)
@@ -118,7 +117,7 @@ $(STAMPS)/imports: $(STAMPS)/environment pyproject.toml $(call find,python,-name
 
 CMAKE = PATH="$(CURDIR)/$(BIN):$$PATH" cmake
 CMAKE_TEST = $(CMAKE) -S . -G Ninja -DFAIRLEAD_BUILD_TESTS=ON -DFAIRLEAD_WERROR=ON \
-    -DCMAKE_PREFIX_PATH="$$($(BIN)/python -c 'import cmeel, pathlib; print(pathlib.Path(cmeel.__path__[0]).parent / "cmeel.prefix")')"
+    -DCMAKE_PREFIX_PATH="$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/cmeel.prefix"
 
 .PHONY: cpp-test
 cpp-test: $(STAMPS)/cpp-test

@@ -52,7 +52,6 @@ def test_stubs_say_what_the_core_has(repository: Path, tmp_path: Path) -> None:
     generate = [python, "-m", "nanobind.stubgen", "--quiet", "--module", "fairlead._core", "--output-file", stubs]
     subprocess.run(generate, check=True, cwd=repository)
     ruff, config = python.with_name("ruff"), repository / "pyproject.toml"
-    subprocess.run([ruff, "check", "--fix", "--quiet", "--config", config, stubs], check=False, capture_output=True)
     subprocess.run([ruff, "format", "--quiet", "--config", config, stubs], check=True)
     committed = repository / "python" / "fairlead" / "_core.pyi"
     assert stubs.read_text(encoding="utf-8") == committed.read_text(encoding="utf-8")
