@@ -14,7 +14,7 @@ from fairlead.io.run_record import RunRecord, RunState, write_run_record
 from fairlead.io.target import save_target
 from fairlead.io.timing import Timing
 from fairlead.sinks.csv import PoseSink, TimingSink
-from fairlead.sinks.model import ModelSink
+from fairlead.sinks.model import ModelHistorySink, ModelSink
 from fairlead.sinks.sink import Sink
 from fairlead.sinks.tum import TumSink
 from fairlead.types import Camera, Estimate, PoseEstimator, Target, View
@@ -23,7 +23,8 @@ _log = logging.getLogger(__name__)
 
 WRITTEN = (
     *("run.json", "target.toml", "target.npz", "camera.yaml", "observations.csv", "poses.csv", "timing.csv"),
-    *("trajectory.tum", "target_refined.toml", "target_refined.npz", "metrics.json", "report.html"),
+    *("trajectory.tum", "target_refined.toml", "target_refined.npz"),
+    *("model_history.csv", "metrics.json", "errors.csv", "report.html"),
 )
 """Files that a run, and its evaluation, leave in its folder."""
 
@@ -52,6 +53,7 @@ class RunFolder:
         self._add(PoseSink(self._path / "poses.csv"))
         self._add(TumSink(self._path / "trajectory.tum"))
         if estimator is not None:
+            self._add(ModelHistorySink(self._path / "model_history.csv", estimator))
             self._add(ModelSink(self._path / "target_refined.toml", estimator))
 
     def _add(self, sink: Sink) -> None:

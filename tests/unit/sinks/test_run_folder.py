@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 from fairlead.io.camera import load_camera
+from fairlead.io.errors import InputError
+from fairlead.io.model_history import read_model_history
 from fairlead.io.observations import read_views
 from fairlead.io.poses import read_poses
 from fairlead.io.run_record import RunRecord, read_run_record
 from fairlead.io.target import load_target
 from fairlead.io.timing import Timing, read_timing
 from fairlead.sinks import model as model_sink
-from fairlead.sinks.model import ModelSink
+from fairlead.sinks.model import ModelHistorySink, ModelSink
 from fairlead.sinks.run_folder import RunFolder
 from fairlead.types import Camera, Estimate, Status, Target, View
 
@@ -32,17 +34,16 @@ RECORD = RunRecord(command="track", state="running", options=None, inputs=())
 
 
 class Growing:
-    """An estimator whose model moves by one metre each time it is looked at."""
+    """An estimator whose model is where the test puts it."""
 
-    looks = 0
+    offset_m = 1.0
 
     def update(self, view: View) -> Estimate:
         raise NotImplementedError
 
     @property
     def model(self) -> Target:
-        self.looks += 1
-        return replace(TARGET, positions=np.full((2, 3), float(self.looks)))
+        return replace(TARGET, positions=np.full((2, 3), self.offset_m))
 
 
 def make_frame(number: int, status: Status = "tracking") -> tuple[View, Estimate, Timing]:
@@ -113,6 +114,23 @@ def test_lines_are_there_before_the_run_ends(tmp_path: Path) -> None:
         assert len(list(read_views(tmp_path / "observations.csv"))) == 1
         assert len(read_timing(tmp_path / "timing.csv")) == 1
         assert (tmp_path / "trajectory.tum").read_text().endswith("\n")
+
+
+def test_the_history_of_the_model_does_not_grow_with_the_frames(tmp_path: Path) -> None:
+    estimator = Growing()
+    sink = ModelHistorySink(tmp_path / "model_history.csv", estimator)
+    for number in range(1000):
+        estimator.offset_m = float(number)
+        sink.write(make_frame(number)[1])
+    sink.close()
+    samples = read_model_history(tmp_path / "model_history.csv", ("a", "b"))
+    assert [sample.frame for sample in samples[:40]] == list(range(40))
+    assert samples[-1].frame == 999
+    assert len(samples) < 120
+    assert samples[3].positions.tolist() == [[3.0] * 3] * 2
+    assert samples[3].sigmas_m.tolist() == [[1.0] * 3] * 2
+    with pytest.raises(InputError, match="every landmark of the target in turn"):
+        read_model_history(tmp_path / "model_history.csv", ("b", "a"))
 
 
 def test_the_model_is_saved_every_second_and_seldomer_where_that_is_slow(
