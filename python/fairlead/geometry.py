@@ -5,6 +5,7 @@
 Cameras are in `fairlead.cameras`; `project` and `unproject` are offered here too.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -129,20 +130,20 @@ def quat_xyzw_from_matrix(R: Matrix3) -> Vector4:
 
     The largest component is computed first. Source: Shepperd 1978, Quaternion from Rotation Matrix.
     """
-    trace = float(np.trace(R))
-    squares = np.array([1.0 + 2.0 * R[0, 0] - trace, 1.0 + 2.0 * R[1, 1] - trace, 1.0 + 2.0 * R[2, 2] - trace])
-    largest = int(np.argmax([*squares, 1.0 + trace]))
-    if largest == 3:
-        quat = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], 1.0 + trace])
+    rows: list[list[float]] = R.tolist()
+    trace = rows[0][0] + rows[1][1] + rows[2][2]
+    squares = [1.0 + 2.0 * rows[axis][axis] - trace for axis in range(3)]
+    i = max(range(3), key=squares.__getitem__)
+    if squares[i] < 1.0 + trace:
+        components = [rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1], 1.0 + trace]
     else:
-        i, j, k = largest, (largest + 1) % 3, (largest + 2) % 3
-        quat = np.empty(4)
-        quat[i] = squares[i]
-        quat[j] = R[j, i] + R[i, j]
-        quat[k] = R[k, i] + R[i, k]
-        quat[3] = R[k, j] - R[j, k]
-    quat /= np.linalg.norm(quat)
-    return -quat if quat[3] < 0.0 else quat
+        j, k = (i + 1) % 3, (i + 2) % 3
+        components = [0.0, 0.0, 0.0, rows[k][j] - rows[j][k]]
+        components[i] = squares[i]
+        components[j] = rows[j][i] + rows[i][j]
+        components[k] = rows[k][i] + rows[i][k]
+    norm = math.copysign(math.hypot(*components), components[3])
+    return np.array([component / norm for component in components])
 
 
 def matrix_from_quat_xyzw(quat_xyzw: Vector4) -> Matrix3:

@@ -22,6 +22,8 @@ TRUTH_COLUMNS = ("frame", "stamp_ns", *POSE_COLUMNS)
 COVARIANCE_COLUMNS = tuple(f"c{i}{j}" for i in range(6) for j in range(i, 6))
 COLUMNS = (*TRUTH_COLUMNS, "status", "reason", *COVARIANCE_COLUMNS, "n_inliers", "reprojection_rms_px")
 
+_UPPER = np.triu_indices(6)
+
 QUATERNION_TOLERANCE = 1e-3
 """Largest deviation of a quaternion's norm from 1: enough for three decimals, too little for a torn line [-]."""
 
@@ -94,7 +96,7 @@ def _pose(cells: Mapping[str, str], path: Path, line: int) -> Matrix4 | None:
 
 def _covariance(cells: Mapping[str, str], path: Path, line: int) -> Matrix6:
     upper = np.zeros((6, 6))
-    upper[np.triu_indices(6)] = [number_cell(cells, column, path, line) for column in COVARIANCE_COLUMNS]
+    upper[_UPPER] = [number_cell(cells, column, path, line) for column in COVARIANCE_COLUMNS]
     return upper + np.triu(upper, 1).T
 
 
@@ -134,7 +136,7 @@ def pose_row(estimate: Estimate) -> list[object]:
     covariance: list[float] = [math.nan] * 21
     if estimate.ok:
         pose = pose_cells(estimate.T_camera_target)
-        covariance = estimate.covariance[np.triu_indices(6)].tolist()
+        covariance = estimate.covariance[_UPPER].tolist()
     numbers = [*pose, *covariance, estimate.reprojection_rms_px]
     cells: list[object] = [number if math.isfinite(number) else "" for number in numbers]
     return [

@@ -3,6 +3,7 @@
 """What the records check of their fields; each function raises ValueError that names the field."""
 
 import operator
+from math import isfinite
 from typing import SupportsIndex
 
 import numpy as np
@@ -73,6 +74,8 @@ def is_covariance(matrix: np.ndarray, tolerance: float = 1e-9) -> bool:
 
     Variances below 1e-14 of the largest count as zero; the smallest eigenvalue may be -tolerance x size.
     """
+    if _is_plainly_positive_definite(matrix):
+        return True
     variances = np.diag(matrix)
     if not np.isfinite(matrix).all() or variances.min(initial=0.0) < 0.0:
         return False
@@ -90,9 +93,21 @@ def is_covariance(matrix: np.ndarray, tolerance: float = 1e-9) -> bool:
     return True
 
 
-def is_rigid(T: np.ndarray, tolerance: float = RIGID_TOLERANCE) -> bool:
-    """R^T R = I and det R = +1 to `tolerance`, last row 0 0 0 1, finite."""
-    if not np.isfinite(T).all() or not np.array_equal(T[3], [0.0, 0.0, 0.0, 1.0]):
+def _is_plainly_positive_definite(matrix: np.ndarray) -> bool:
+    """Symmetric to the last bit and with a Cholesky factor: the usual case, found out ten times faster."""
+    try:
+        factor = np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
         return False
-    R = T[:3, :3]
-    return bool(np.abs(R.T @ R - np.eye(3)).max() <= tolerance and np.linalg.det(R) > 0.0)
+    return bool(np.isfinite(factor).all() and np.array_equal(matrix, matrix.T))
+
+
+def is_rigid(T: np.ndarray, tolerance: float = RIGID_TOLERANCE) -> bool:
+    """R R^T = I and det R = +1 to `tolerance`, last row 0 0 0 1, finite. Written out: this runs for every frame."""
+    (a, b, c, x), (d, e, f, y), (g, h, i, z), last = T.tolist()
+    if last != [0.0, 0.0, 0.0, 1.0] or not isfinite(x + y + z):
+        return False
+    lengths = (a * a + b * b + c * c, d * d + e * e + f * f, g * g + h * h + i * i)
+    angles = (a * d + b * e + c * f, a * g + b * h + c * i, d * g + e * h + f * i)
+    orthonormal = all(abs(v - 1.0) <= tolerance for v in lengths) and all(abs(v) <= tolerance for v in angles)
+    return orthonormal and a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) > 0.0
