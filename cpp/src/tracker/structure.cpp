@@ -16,8 +16,10 @@ using window::ViewBlock;
 constexpr int kJoinIterations = 8;
 constexpr double kJoinStep = 0.01;           // squared step [sigma^2] below which the newest view is settled
 constexpr double kNonlinearity = 0.01;       // [sigma] error of the quadratic before its views are relinearised
-constexpr std::size_t kFewViews = 8;         // windows this small are always relinearised
-constexpr int kRelinearisations = 4;
+constexpr double kNews = 0.1;                // [sigma] error beyond which outliers are judged anew as well
+constexpr double kWidest = 16.0;             // how much wider the loss then begins
+constexpr std::size_t kFewViews = 16;        // windows this small are always solved anew
+constexpr int kRelinearisations = 10;
 
 Eigen::Map<const VecX> stacked(const std::vector<Vec3>& X) {
     return {X.front().data(), 3 * static_cast<Eigen::Index>(X.size())};
@@ -118,9 +120,17 @@ double Structure::nonlinearity() noexcept {
     return largest / radius_ * std::sqrt(std::max(0.0, shift_.dot(workspace_.step)));
 }
 
-bool Structure::relinearise(int max_iterations) noexcept {
-    const window::LmOptions options{.max_iterations = max_iterations, .initial_damping = 1e-6, .tolerance = 1e-6};
-    if (!window::levenberg_marquardt(problem_, options, workspace_).ok) return false;
+/// All views of the window again; with a loss that narrows from `widest` times its width if there was much news.
+bool Structure::relinearise(double widest) noexcept {
+    const window::LmOptions options{.max_iterations = kRelinearisations, .initial_damping = 1e-6, .tolerance = 1e-6};
+    const double width = problem_.loss.threshold;
+    bool ok = true;
+    for (double mu = widest; ok && mu >= 1.0; mu *= 0.25) {
+        problem_.loss.threshold = mu * width;
+        ok = window::levenberg_marquardt(problem_, options, workspace_).ok;
+    }
+    problem_.loss.threshold = width;
+    if (!ok) return false;
     if (!window::assemble_data(problem_, 0.0, workspace_)) return false;
     H_data_ = workspace_.S;
     g_data_ = workspace_.g;
@@ -174,8 +184,10 @@ Fusion Structure::fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<cons
         retire(problem_.views.size() - 1);
         return fusion;
     }
-    const bool stale = problem_.views.size() <= kFewViews || nonlinearity() > kNonlinearity;
-    if (!stale || !relinearise(kRelinearisations)) {
+    const bool few = problem_.views.size() <= kFewViews;
+    const double error = nonlinearity();
+    const bool stale = few || error > kNonlinearity;
+    if (!stale || !relinearise(few || error > kNews ? kWidest : 1.0)) {
         if (!newest_system(1.0)) return retire(problem_.views.size() - 1), fusion;
         absorb_newest();
     }

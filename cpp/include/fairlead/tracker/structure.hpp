@@ -39,7 +39,7 @@ class Structure {
   private:
     bool join_newest() noexcept;
     bool newest_system(double mu) noexcept;
-    bool relinearise(int max_iterations) noexcept;
+    bool relinearise(double widest) noexcept;
     void absorb_newest() noexcept;
     void spare_one() noexcept;
     void retire(std::size_t index) noexcept;
