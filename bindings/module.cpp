@@ -8,6 +8,7 @@
 namespace nb = nanobind;
 
 NB_MODULE(_core, module) {
+    nb::set_leak_warnings(false);  // what Python still holds at exit is no error, and a library prints nothing
     module.doc() = "The C++ core of fairlead. Private: use the typed wrappers of the package.";
     module.attr("__version__") = FAIRLEAD_VERSION;
     fairlead::bindings::bind_geometry(module);
