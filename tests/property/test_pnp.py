@@ -120,4 +120,5 @@ def test_rubbish_is_refused_or_answered_in_front(seed: int, n: int, noise: float
         assert in_front.sum() >= 4
         assert np.allclose(T[:3, :3].T @ T[:3, :3], np.eye(3), rtol=0.0, atol=1e-12)
         assert np.linalg.det(T[:3, :3]) > 0.0
-        assert np.linalg.eigvalsh(pose[1]).min() > 0.0
+        scale = 1.0 / np.sqrt(np.diag(pose[1]))  # metres and radians of a target of any size
+        assert np.linalg.eigvalsh(scale[:, None] * pose[1] * scale).min() > 0.0
