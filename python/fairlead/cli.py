@@ -3,17 +3,22 @@
 """The command line: arguments in, exit status out. 0 done, 1 coverage too low, 2 bad input; 130, 143 interrupted."""
 
 import errno
+import os
 import signal
 import sys
+import threading
 from collections.abc import Sequence
 from types import FrameType
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 from tyro.conf import subcommand
 
 from fairlead.config import Config, DemoConfig, EvaluateConfig, RefineConfig, TrackConfig, UsageError
 from fairlead.io.errors import InputError, one_line
+
+if TYPE_CHECKING:
+    from fairlead.demo import DemoResult
 
 _DESCRIPTION = "Monocular 6D pose of a rigid target whose 3D model is only roughly known."
 
@@ -48,7 +53,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         full = " (what was written stays readable)" if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) else ""
         return _complain(f"{place}{error.strerror}{full}", 2)
     except Stopped as stop:
-        return _complain("stopped; what was written stays readable", 128 + stop.number)
+        status = _complain("stopped; what was written stays readable", 128 + stop.number)
+        if threading.active_count() > 1:  # a batch is still being solved, and cannot be told
+            sys.stderr.flush()
+            os._exit(status)
+        return status
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
@@ -74,7 +83,7 @@ def _run(config: Config) -> int:
     if isinstance(config, DemoConfig):
         from fairlead.demo import demo
 
-        demo(config)
+        _show(demo(config))
         return 0
     if isinstance(config, EvaluateConfig):
         sys.stdout.write(f"{run.evaluate(config)}\n")
@@ -85,6 +94,27 @@ def _run(config: Config) -> int:
     if verb.coverage < config.min_coverage:
         return _complain(f"coverage {verb.coverage:.1%} is below --min-coverage {config.min_coverage:.1%}", 1)
     return 0
+
+
+def _show(result: "DemoResult") -> None:
+    """The demo's table on stdout."""
+    from rich.console import Console
+    from rich.table import Table
+
+    drawn, refined = result.drawing_side, result.refined_side
+    table = Table(title=f"Pen with eight tags: {result.photographs} photographs, {result.corners} corners")
+    table.add_column("")
+    table.add_column("drawing", justify="right")
+    table.add_column("refined", justify="right", style="bold")
+    table.add_row("reprojection [px rms]", f"{result.drawing_px:.2f}", f"{result.refined_px:.2f}")
+    unseen = "  on the odd photographs, refined with the even ones"
+    table.add_row(unseen, f"{result.drawing_unseen_px:.2f}", f"{result.refined_unseen_px:.2f}")
+    refined_mm = f"{refined.mean_mm:.2f} ± {refined.sigma_mm:.2f}"
+    table.add_row("mean side of the tags [mm]", f"{drawn.mean_mm:.2f} ± {drawn.sigma_mm:.2f}", refined_mm)
+    console = Console()
+    console.print(table)
+    console.print("The builder later corrected the side to 12.61 mm; nothing above was told that.")
+    console.print(f"{result.report} ({result.seconds:.1f} s)", soft_wrap=True)
 
 
 if __name__ == "__main__":

@@ -66,8 +66,8 @@ class EvaluateConfig:
 
     run: Positional[Path]
     """Folder written by track or refine."""
-    truth: Path
-    """truth.csv: frame, stamp_ns and the true pose."""
+    truth: Path | None = None
+    """truth.csv: frame, stamp_ns and the true pose; without it the report says what the observations tell."""
     target_true: Path | None = None
     """target.toml with the true landmarks."""
     output: Annotated[Path | None, arg(aliases=["-o"])] = None

@@ -3,6 +3,7 @@
 """The meeting point: source -> detector -> estimator -> sinks."""
 
 import itertools
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -61,7 +62,8 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
                 start_s = time.perf_counter()
                 estimate = estimator.update(view)
                 update_ms = 1e3 * (time.perf_counter() - start_s)
-                folder.write(view, estimate, _timing(view, detect_ms, update_ms))
+                folder.write_view(view)
+                folder.write(estimate, _timing(view, detect_ms, update_ms))
                 advance(source.work(view))
     return _finish(config, folder.record)
 
@@ -73,17 +75,18 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
     options = tracker_options(config.options)
     timed_views = _timed(source, config.source)
     with RunFolder(config.output, _record("refine", config, options), target, camera) as folder:
+        folder.open_sinks(None)
         views: list[View] = []
         timings: list[Timing] = []
         with progress("read", source.count) as advance:
             for view, detect_ms in timed_views:
+                folder.write_view(view)
                 views.append(view)
                 timings.append(_timing(view, detect_ms, float("nan")))
                 advance(source.work(view))
         refinement = _solve(config, views, target, camera, options)
-        folder.open_sinks(None)
-        for view, estimate, timing in zip(views, refinement.estimates, timings, strict=True):
-            folder.write(view, estimate, timing)
+        for estimate, timing in zip(refinement.estimates, timings, strict=True):
+            folder.write(estimate, timing)
         folder.save_model(refinement.model)
     return _finish(config, folder.record)
 
@@ -91,10 +94,24 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
 def _solve(
     config: RefineConfig, views: list[View], target: Target, camera: Camera, options: TrackerOptions
 ) -> Refinement:
-    try:
-        return refine_batch(views, target, camera, options)
-    except ValueError as error:
-        raise InputError(config.target, str(error)) from error
+    """The batch, in a thread of its own, so that a signal need not wait for its end."""
+    answers: list[Refinement | Exception] = []
+
+    def solve() -> None:
+        try:
+            answers.append(refine_batch(views, target, camera, options))
+        except Exception as error:  # raised again below, in the thread that asked
+            answers.append(error)
+
+    thread = threading.Thread(target=solve, daemon=True)
+    thread.start()
+    thread.join()
+    answer = answers[0]
+    if isinstance(answer, ValueError):
+        raise InputError(config.target, str(answer)) from answer
+    if isinstance(answer, Exception):
+        raise answer
+    return answer
 
 
 def evaluate(config: EvaluateConfig) -> Path:

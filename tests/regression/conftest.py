@@ -100,9 +100,9 @@ def _long_flight(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("long")
     make_flight(folder, 400)
     lines = (folder / "observations.csv").read_text().splitlines()
-    with (folder / "observations.csv").open("w") as stream:  # round and round, 12,000 frames
+    with (folder / "observations.csv").open("w") as stream:  # round and round, 4,000 frames
         stream.write(lines[0] + "\n")
-        for turn in range(30):
+        for turn in range(10):
             for line in lines[1:]:
                 frame, _, rest = line.split(",", 2)
                 number = int(frame) + 400 * turn
@@ -112,7 +112,7 @@ def _long_flight(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def long_flight(_long_flight: Path, tmp_path: Path) -> Flight:
-    """12,000 frames; results go into a folder of the test."""
+    """4,000 frames; results go into a folder of the test."""
     for name in ("observations.csv", "target.toml", "camera.yaml"):
         (tmp_path / name).symlink_to(_long_flight / name)
     return Flight(folder=tmp_path)

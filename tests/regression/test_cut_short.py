@@ -63,6 +63,21 @@ def test_a_signal_closes_every_file(long_flight: Flight, number: signal.Signals,
     assert load_target(long_flight.out / "target_refined.toml").landmarks
 
 
+def test_a_batch_that_takes_long_can_be_stopped(long_flight: Flight) -> None:
+    process = long_flight.start("refine")
+    wait_for_lines(long_flight.out / "observations.csv", 4_000 * 7, process)
+    time.sleep(0.5)  # now it solves
+    start_s = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=60)
+    if process.returncode == 0:
+        pytest.skip("it was done before it could be stopped")
+    assert process.returncode == 130
+    assert error == "fairlead: stopped; what was written stays readable\n"
+    assert time.monotonic() - start_s < 20.0
+    assert json.loads((long_flight.out / "run.json").read_text())["state"] == "interrupted"
+
+
 def test_a_full_disk_is_one_line_and_keeps_whole_lines(long_flight: Flight) -> None:
     """No file may grow beyond 200 kB, which poses.csv reaches first or observations.csv."""
     limit = 200_000

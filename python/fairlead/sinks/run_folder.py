@@ -60,9 +60,12 @@ class RunFolder:
         self._sinks.append(sink)
         self._stack.callback(sink.close)
 
-    def write(self, view: View, estimate: Estimate, timing: Timing) -> None:
-        """Take one frame."""
+    def write_view(self, view: View) -> None:
+        """Take what was seen in one frame."""
         self._observations.write(view)
+
+    def write(self, estimate: Estimate, timing: Timing) -> None:
+        """Take what was found in one frame."""
         for sink in self._sinks:
             sink.write(estimate)
         self._timing.write(timing)

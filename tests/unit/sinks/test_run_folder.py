@@ -71,13 +71,19 @@ def make_frame(number: int, status: Status = "tracking") -> tuple[View, Estimate
     return view, estimate, Timing(frame=number, stamp_ns=number, detect_ms=1.0, update_ms=2.0)
 
 
+def write_frame(folder: RunFolder, number: int, status: Status = "tracking") -> None:
+    view, estimate, timing = make_frame(number, status)
+    folder.write_view(view)
+    folder.write(estimate, timing)
+
+
 def test_a_run_leaves_every_file(tmp_path: Path) -> None:
     out = tmp_path / "new" / "run"
     with RunFolder(out, RECORD, TARGET, CAMERA) as folder:
         folder.open_sinks(Growing())
         assert read_run_record(out / "run.json").state == "running"
-        folder.write(*make_frame(0))
-        folder.write(*make_frame(1, "lost"))
+        write_frame(folder, 0)
+        write_frame(folder, 1, "lost")
     record = read_run_record(out / "run.json")
     assert (record.state, record.frames, record.frames_with_pose) == ("done", 2, 1)
     assert [estimate.status for estimate in read_poses(out / "poses.csv")] == ["tracking", "lost"]
@@ -95,7 +101,7 @@ def test_what_was_written_stays(tmp_path: Path, error: type[BaseException], stat
     def run() -> None:
         with RunFolder(tmp_path, RECORD, TARGET, CAMERA) as folder:
             folder.open_sinks(Growing())
-            folder.write(*make_frame(0))
+            write_frame(folder, 0)
             raise error
 
     with pytest.raises(error):
@@ -109,7 +115,7 @@ def test_what_was_written_stays(tmp_path: Path, error: type[BaseException], stat
 def test_lines_are_there_before_the_run_ends(tmp_path: Path) -> None:
     with RunFolder(tmp_path, RECORD, TARGET, CAMERA) as folder:
         folder.open_sinks(None)
-        folder.write(*make_frame(0))
+        write_frame(folder, 0)
         assert len(read_poses(tmp_path / "poses.csv")) == 1
         assert len(list(read_views(tmp_path / "observations.csv"))) == 1
         assert len(read_timing(tmp_path / "timing.csv")) == 1
