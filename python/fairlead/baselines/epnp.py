@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""EPnP frame by frame on the model as it was given: what most people do, docs/baselines.md section 2."""
+
+from fairlead.baselines.observed import no_pose, observed, plain
+from fairlead.baselines.single_view import solve_view
+from fairlead.tracker import LandmarkIndex
+from fairlead.types import Camera, Estimate, Target, View
+
+
+class EpnpTracker:
+    """Each view for itself; the model never changes.
+
+    EPnP as published, without a search for outliers and without refinement; flat landmarks go to IPPE and SQPnP too,
+    where EPnP fails. The covariance is that of the told pixel errors on an exact model, docs/baselines.md eq. (1): what
+    a user of EPnP has, and too small where the model is wrong.
+
+    Raises ValueError for fewer than four landmarks.
+    """
+
+    def __init__(self, target: Target, camera: Camera) -> None:
+        if len(target.landmarks) < 4:
+            raise ValueError(f"target: expected at least 4 landmarks, got {len(target.landmarks)}")
+        self._target = target
+        self._camera = plain(camera)
+        self._index = LandmarkIndex(target.landmarks)
+
+    def update(self, view: View) -> Estimate:
+        """Status tracking, or lost with reason too_few or degenerate. ValueError for an unknown landmark only."""
+        seen = observed(view, self._index)
+        found = solve_view(seen, self._target.positions, self._camera, refined=False)
+        if isinstance(found, str):
+            return no_pose(view, "lost", found)
+        return Estimate(
+            frame=view.frame,
+            stamp_ns=view.stamp_ns,
+            status="tracking",
+            reason="",
+            T_camera_target=found.T_camera_target,
+            covariance=found.covariance,
+            n_inliers=len(seen.index),
+            reprojection_rms_px=found.reprojection_rms_px,
+            information_gained=0.0,
+            reset_counter=0,
+            inliers=tuple(self._target.landmarks[j] for j in seen.index),
+        )
+
+    @property
+    def model(self) -> Target:
+        """The target as it was given."""
+        return self._target

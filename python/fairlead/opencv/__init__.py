@@ -1,0 +1,39 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""OpenCV behind one door: the only package that imports cv2, and only when something of it is called.
+
+Works with OpenCV 4 and 5. Every pose that comes back was checked (docs/baselines.md section 1), every image was
+measured by its header before it was decoded. `cv2.FileStorage` is not used: it corrupts the heap on malformed files.
+"""
+
+from fairlead.opencv.images import GreyImage, Image, grey, image_size, read_image
+from fairlead.opencv.markers import (
+    FoundCorners,
+    charuco_corners,
+    chessboard_corners,
+    marker_cells,
+    marker_corners,
+    marker_image,
+)
+from fairlead.opencv.pnp import MIN_POINTS, PnpSolution, epnp, ideal_pixels, ippe, refine, sqpnp
+
+__all__ = [
+    "MIN_POINTS",
+    "FoundCorners",
+    "GreyImage",
+    "Image",
+    "PnpSolution",
+    "charuco_corners",
+    "chessboard_corners",
+    "epnp",
+    "grey",
+    "ideal_pixels",
+    "image_size",
+    "ippe",
+    "marker_cells",
+    "marker_corners",
+    "marker_image",
+    "read_image",
+    "refine",
+    "sqpnp",
+]
