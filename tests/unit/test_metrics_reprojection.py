@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fairlead.evaluate.reprojection import reproject
-from fairlead.types import Camera, Estimate, Target, View
+from fairlead.types import Camera, Estimate, View
 
 CAMERA = Camera(
     name="c",
@@ -21,7 +21,7 @@ CAMERA = Camera(
 # At 10 m in front of the camera 1 m is 10 px.
 X = np.array([[0.0, 0, 0], [1.0, 0, 0], [0.0, 1, 0], [1.0, 1, 0], [2.0, 1, 0]])
 Z = np.array([[50.0, 50], [60, 50], [50, 60], [60, 60], [70, 60]])
-TARGET = Target(name="t", landmarks=tuple("abcde"), positions=X, covariance=np.zeros((15, 15)))
+NAMES = tuple("abcde")
 
 
 def estimate(frame: int = 0, *, ok: bool = True, depth: float = 10.0) -> Estimate:
@@ -57,7 +57,7 @@ def view(offsets: np.ndarray, S: np.ndarray | None = None, frame: int = 0, names
 def test_eq_11_is_a_distance_per_point() -> None:
     offsets = np.zeros((5, 2))
     offsets[1] = [3.0, -4.0]
-    found = reproject([view(offsets)], [estimate()], CAMERA, [TARGET])
+    found = reproject([view(offsets)], [estimate()], CAMERA, NAMES, [X])
     assert found is not None
     assert found.errors_px == pytest.approx(np.array([0, 5.0, 0, 0, 0]))
     assert found.summary.rms == pytest.approx(5.0 / math.sqrt(5.0))
@@ -67,7 +67,7 @@ def test_eq_11_is_a_distance_per_point() -> None:
 def test_normalised_residual_eq_12() -> None:
     offsets = np.zeros((5, 2))
     offsets[0] = [-3.0, -4.0]
-    found = reproject([view(offsets)], [estimate()], CAMERA, [TARGET])
+    found = reproject([view(offsets)], [estimate()], CAMERA, NAMES, [X])
     assert found is not None
     assert found.normalised[0] == pytest.approx([1.5, 2.0])  # r = projection - observation
     # 5 points, one pose: 2 x 5 - 6 = 4 dof; sum d^2 = 6.25.
@@ -78,7 +78,7 @@ def test_normalised_residual_eq_12() -> None:
 def test_correlated_noise_is_whitened() -> None:
     S = np.array([[2.0, 1.0], [1.0, 3.0]])
     offsets = np.tile([1.0, -2.0], (5, 1))
-    found = reproject([view(offsets, S)], [estimate()], CAMERA, [TARGET])
+    found = reproject([view(offsets, S)], [estimate()], CAMERA, NAMES, [X])
     assert found is not None
     r = np.array([-1.0, 2.0])
     assert np.sum(found.normalised**2, axis=1) == pytest.approx(np.full(5, r @ np.linalg.solve(S, r)))
@@ -89,7 +89,7 @@ def test_robust_factor_eq_13_is_not_moved_by_an_outlier() -> None:
     distance = 2.0 * math.sqrt(2.0 * math.log(2.0))
     offsets = np.tile([distance, 0.0], (5, 1))
     offsets[2] = [500.0, 0.0]
-    found = reproject([view(offsets)], [estimate()], CAMERA, [TARGET])
+    found = reproject([view(offsets)], [estimate()], CAMERA, NAMES, [X])
     assert found is not None
     assert found.robust_noise_factor == pytest.approx(math.sqrt(10.0 / 4.0))
     assert found.noise_factor > 100.0
@@ -106,7 +106,7 @@ def test_what_cannot_be_used_is_dropped_and_counted() -> None:
     damaged = View(
         frame=0, stamp_ns=0, landmarks=("a", "b", "c", "ghost", "e"), pixels=Z + offsets, covariances=covariances
     )
-    found = reproject([damaged], [estimate()], CAMERA, [TARGET])
+    found = reproject([damaged], [estimate()], CAMERA, NAMES, [X])
     assert found is not None
     assert found.errors_px == pytest.approx(np.zeros(1))
     assert found.n_dropped == 4
@@ -115,7 +115,7 @@ def test_what_cannot_be_used_is_dropped_and_counted() -> None:
 
 
 def test_a_landmark_behind_the_camera_is_an_infinite_error() -> None:
-    found = reproject([view(np.zeros((5, 2)))], [estimate(depth=-10.0)], CAMERA, [TARGET])
+    found = reproject([view(np.zeros((5, 2)))], [estimate(depth=-10.0)], CAMERA, NAMES, [X])
     assert found is not None
     assert np.isinf(found.errors_px).all()
     assert found.outlier_share == 1.0
@@ -123,18 +123,16 @@ def test_a_landmark_behind_the_camera_is_an_infinite_error() -> None:
 
 def test_only_frames_with_a_pose_and_a_view_count() -> None:
     views = [view(np.zeros((5, 2)), frame=0), view(np.ones((5, 2)), frame=2)]
-    found = reproject(views, [estimate(0), estimate(1), estimate(2, ok=False)], CAMERA, [TARGET] * 3)
+    found = reproject(views, [estimate(0), estimate(1), estimate(2, ok=False)], CAMERA, NAMES, [X] * 3)
     assert found is not None
     assert found.frames.tolist() == [0] * 5
     assert found.per_frame_px == pytest.approx(np.array([0.0, np.nan, np.nan]), nan_ok=True)
-    assert reproject(views, [estimate(1)], CAMERA, [TARGET]) is None
+    assert reproject(views, [estimate(1)], CAMERA, NAMES, [X]) is None
 
 
 def test_each_frame_is_judged_on_its_own_model() -> None:
-    shifted = Target(
-        name="t", landmarks=tuple("abcde"), positions=X + np.array([0.1, 0, 0]), covariance=np.zeros((15, 15))
-    )
+    shifted = X + np.array([0.1, 0, 0])
     views = [view(np.zeros((5, 2)), frame=0), view(np.zeros((5, 2)), frame=1)]
-    found = reproject(views, [estimate(0), estimate(1)], CAMERA, [TARGET, shifted])
+    found = reproject(views, [estimate(0), estimate(1)], CAMERA, NAMES, [X, shifted])
     assert found is not None
     assert found.per_frame_px == pytest.approx(np.array([0.0, 1.0]))

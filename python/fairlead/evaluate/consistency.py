@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Float64
@@ -67,6 +68,7 @@ class Band:
         return self.lower <= value <= self.upper
 
 
+@lru_cache(maxsize=256)  # a run asks for the same band at every frame
 def chi_square_band(dof: int, probability: float) -> Band:
     """Where chi^2_dof / dof lies with this probability, equal tails, docs/metrics.md eq. (20). NaN at 0 dof."""
     if dof == 0:

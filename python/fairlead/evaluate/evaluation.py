@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float64, Int64
 
-from fairlead.evaluate.alignment import Alignment
 from fairlead.evaluate.failures import Coverage, coverage
+from fairlead.evaluate.history import ModelHistory, model_history, models_of_frames
 from fairlead.evaluate.landmarks import ModelChange, ModelErrors, model_change, model_errors
 from fairlead.evaluate.matching import TOLERANCE_NS, Matching, match_by_stamp
 from fairlead.evaluate.pose_errors import PoseConsistency, PoseErrors, pose_consistency, pose_errors
@@ -18,6 +18,7 @@ from fairlead.evaluate.reprojection import Reprojection, reproject
 from fairlead.evaluate.summary import Series, UpdateTime, update_time
 from fairlead.evaluate.surface import SurfaceErrors, load_vertices, surface_errors
 from fairlead.evaluate.trajectory import TrajectoryErrors, trajectory_errors
+from fairlead.io.model_history import ModelSample
 from fairlead.types import Camera, Estimate, Points3, Poses, Target, TruthPose, View
 
 
@@ -26,6 +27,7 @@ class Run:
     """What was judged, for the figures: all frames in the order of the run."""
 
     frames: Int64[np.ndarray, " k"]
+    stamps_ns: Int64[np.ndarray, " k"]
     seconds: Series
     """Since the first frame [s]."""
     ok: Bool[np.ndarray, " k"]
@@ -51,21 +53,6 @@ class AgainstTruth:
     consistency: PoseConsistency
     trajectory: TrajectoryErrors | None
     surface: SurfaceErrors | None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ModelHistory:
-    """Error of the landmark model while it was refined."""
-
-    seconds: Series
-    raw_m: Series
-    """Rms over the landmarks [m]."""
-    se3_m: Series
-    """The same after the best rigid motion; NaN where it is not determined."""
-    sim3_m: Series
-    """The same after the best similarity."""
-    sigma_m: Series
-    """What the model's covariance says: root of the mean trace per landmark [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -96,7 +83,7 @@ def evaluate(
     views: Sequence[View] | None = None,
     camera: Camera | None = None,
     timings_ms: Float64[np.ndarray, " m"] | None = None,
-    models: Sequence[Target] | None = None,
+    models: Sequence[ModelSample] | None = None,
     tolerance_ns: int = TOLERANCE_NS,
 ) -> Evaluation:
     """Compare a run with what is known of the truth.
@@ -120,21 +107,24 @@ def evaluate(
     timings_ms
         Time of each update [ms], NaN where it was not taken.
     models
-        The model after each frame, one per estimate: gives the model's error over time, and each frame's reprojection
-        is then judged on its own model. Without it the last model serves all frames.
+        The model while it was refined, in order of time: gives its error over time, and each frame's reprojection is
+        then judged on the model of that time. Without it the last model serves all frames.
     tolerance_ns
         Largest difference of stamps between truth and estimate [ns].
 
-    Raises ValueError for a negative tolerance, a mesh that cannot be read, or `models` of another length.
+    Raises ValueError for a negative tolerance, a mesh that cannot be read, or samples of another number of landmarks.
     """
-    if models is not None and len(models) != len(estimates):
-        raise ValueError(f"models: expected one per estimate, {len(estimates)}, got {len(models)}")
     after = target0 if target_estimated is None else target_estimated
     run = _run(estimates, target0, target_estimated, target_true)
+    history = None
+    if models and target_true is not None:
+        history = model_history(models, after.landmarks, target_true, stamps_ns=run.stamps_ns)
     errors_after = None if target_true is None else model_errors(after, target_true)
     residuals = None
     if views is not None and camera is not None:
-        residuals = reproject(views, estimates, camera, models or [after] * len(estimates))
+        residuals = reproject(
+            views, estimates, camera, after.landmarks, models_of_frames(estimates, target0, after, models)
+        )
     return Evaluation(
         run=run,
         coverage=coverage(estimates),
@@ -144,7 +134,7 @@ def evaluate(
         model_before=None if target_true is None else model_errors(target0, target_true),
         model_after=errors_after,
         model_change=None if target_estimated is None else model_change(target0, target_estimated),
-        model_history=_history(run, models, target_true) if models is not None and target_true is not None else None,
+        model_history=history,
         reprojection=residuals,
         update_time=None if timings_ms is None else update_time(timings_ms),
     )
@@ -154,6 +144,7 @@ def _run(estimates: Sequence[Estimate], target0: Target, estimated: Target | Non
     stamps = [estimate.stamp_ns for estimate in estimates]
     return Run(
         frames=np.array([estimate.frame for estimate in estimates], dtype=np.int64),
+        stamps_ns=np.array(stamps, dtype=np.int64),
         seconds=np.array([1e-9 * (stamp - stamps[0]) for stamp in stamps], dtype=np.float64),
         ok=np.array([estimate.ok for estimate in estimates], dtype=bool),
         T_camera_target=np.array([estimate.T_camera_target for estimate in estimates]).reshape(-1, 4, 4),
@@ -189,20 +180,4 @@ def _against_truth(
         consistency=pose_consistency(T, T_true, covariances),
         trajectory=trajectory_errors(T[ok], T_true[ok]),
         surface=None if vertices is None else surface_errors(T, T_true, vertices, camera),
-    )
-
-
-def _history(run: Run, models: Sequence[Target], true: Target) -> ModelHistory:
-    errors = [model_errors(model, true) for model in models]
-
-    def rms(alignment: Alignment) -> Series:
-        found = [None if each is None else each.aligned(alignment) for each in errors]
-        return np.array([np.nan if each is None else each.summary.rms for each in found], dtype=np.float64)
-
-    return ModelHistory(
-        seconds=run.seconds,
-        raw_m=rms("raw"),
-        se3_m=rms("se3"),
-        sim3_m=rms("sim3"),
-        sigma_m=np.sqrt([3.0 * float(np.mean(np.diag(model.covariance))) for model in models]),
     )

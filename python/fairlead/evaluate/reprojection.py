@@ -11,7 +11,7 @@ from scipy.stats import chi2
 
 from fairlead import geometry
 from fairlead.evaluate.summary import Series, Summary, root_mean_square, summarise
-from fairlead.types import Camera, Estimate, Points3, Target, View
+from fairlead.types import Camera, Estimate, PixelCovariances, Points3, View
 
 Residuals = Float64[np.ndarray, "m 2"]
 """One row per observation."""
@@ -52,50 +52,51 @@ class Reprojection:
 
 
 def reproject(
-    views: Sequence[View], estimates: Sequence[Estimate], camera: Camera, models: Sequence[Target]
+    views: Sequence[View],
+    estimates: Sequence[Estimate],
+    camera: Camera,
+    landmarks: Sequence[str],
+    models: Sequence[Points3],
 ) -> Reprojection | None:
     """r = pi(T X_j) - z_j over all frames with a pose, docs/metrics.md eq. (11)-(13).
 
-    Views and estimates are matched by (frame, stamp_ns); `models` holds the landmark model of each estimate. None
-    where no observation can be judged.
+    Views and estimates are matched by (frame, stamp_ns); `models` holds the positions of `landmarks` that each estimate
+    belongs to [m]. None where no observation can be judged.
     """
     view_of = {(view.frame, view.stamp_ns): view for view in views}
-    residuals: list[Residuals] = []
-    normalised: list[Residuals] = []
+    place = {name: row for row, name in enumerate(landmarks)}
+    points: list[Points3] = []
+    observed: list[Residuals] = []
+    covariances: list[PixelCovariances] = []
     frames: list[int] = []
     n_dropped = 0
-    places: dict[int, Mapping[str, int]] = {}
-    for index, (estimate, model) in enumerate(zip(estimates, models, strict=True)):
+    for index, (estimate, X) in enumerate(zip(estimates, models, strict=True)):
         view = view_of.get((estimate.frame, estimate.stamp_ns))
         if view is None or not estimate.ok:
             continue
-        place = places.setdefault(id(model), {name: row for row, name in enumerate(model.landmarks)})
-        r, white = _view_residuals(view, estimate, camera, model.positions, place)
-        n_dropped += len(view.landmarks) - len(r)
-        residuals.append(r)
-        normalised.append(white)
-        frames += [index] * len(r)
+        usable = usable_observations(view, place)
+        n_dropped += len(view.landmarks) - len(usable)
+        points.append(geometry.transform(estimate.T_camera_target, X[[place[view.landmarks[k]] for k in usable]]))
+        observed.append(view.pixels[usable])
+        covariances.append(view.covariances[usable])
+        frames += [index] * len(usable)
     if not frames:
         return None
-    rows = np.array(frames, dtype=np.int64)
-    return _judge(np.concatenate(residuals), np.concatenate(normalised), rows, len(estimates), n_dropped)
-
-
-def _view_residuals(
-    view: View, estimate: Estimate, camera: Camera, X: Points3, place: Mapping[str, int]
-) -> tuple[Residuals, Residuals]:
-    """Residuals [px] and normalised residuals of the usable observations; inf for landmarks behind the camera."""
-    usable = usable_observations(view, place)
-    points = geometry.transform(estimate.T_camera_target, X[[place[view.landmarks[k]] for k in usable]])
-    r = geometry.project(camera, points) - view.pixels[usable]
+    r = geometry.project(camera, np.concatenate(points)) - np.concatenate(observed)
     r[np.isnan(r).any(axis=1)] = np.inf
-    L = np.linalg.cholesky(view.covariances[usable])
-    first = r[:, 0] / L[:, 0, 0]
+    white = whitened(r, np.concatenate(covariances))
+    return _judge(r, white, np.array(frames, dtype=np.int64), len(estimates), n_dropped)
+
+
+def whitened(r: Residuals, covariances: Float64[np.ndarray, "m 2 2"]) -> Residuals:
+    """L^-1 r with S = L L^T, docs/metrics.md eq. (12); inf where r is."""
+    L = np.linalg.cholesky(covariances)
     with np.errstate(invalid="ignore"):
+        first = r[:, 0] / L[:, 0, 0]
         second = (r[:, 1] - L[:, 1, 0] * first) / L[:, 1, 1]
     white = np.column_stack([first, second])
     white[np.isinf(r).any(axis=1)] = np.inf
-    return r, white
+    return white
 
 
 def usable_observations(view: View, place: Mapping[str, int]) -> Int64[np.ndarray, " m"]:

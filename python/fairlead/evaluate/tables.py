@@ -1,0 +1,115 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Methods side by side: the rows of the report, and errors.csv."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import get_args
+
+from fairlead.evaluate.catalogue import METRICS
+from fairlead.evaluate.evaluation import Evaluation
+from fairlead.evaluate.metric import Better, Group, Mark, Metric, Reading
+from fairlead.io.csv_lines import CsvWriter
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cell:
+    """One number of one method, as it is printed."""
+
+    text: str
+    detail: str
+    mark: Mark | None
+    best: bool
+    """The best of several methods."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """One metric of all methods; None where a method does not have it."""
+
+    key: str
+    label: str
+    unit: str
+    cells: tuple[Cell | None, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """The rows of one group."""
+
+    key: Group
+    rows: tuple[Row, ...]
+
+
+def tables(evaluations: Mapping[str, Evaluation]) -> tuple[Table, ...]:
+    """All groups that at least one run has numbers for; columns in the order of `evaluations`."""
+    built: list[Table] = []
+    for key in get_args(Group):
+        rows = [_row(metric, list(evaluations.values())) for metric in METRICS if metric.group == key]
+        present = tuple(row for row in rows if any(cell is not None for cell in row.cells))
+        if present:
+            built.append(Table(key=key, rows=present))
+    return tuple(built)
+
+
+def _row(metric: Metric, evaluations: Sequence[Evaluation]) -> Row:
+    readings = [metric.read(evaluation) for evaluation in evaluations]
+    best = _best(metric.better, readings)
+    cells = [
+        None
+        if reading is None
+        else Cell(text=number(reading.value), detail=reading.detail, mark=reading.mark, best=reading.value == best)
+        for reading in readings
+    ]
+    return Row(key=metric.key, label=metric.label, unit=metric.unit, cells=tuple(cells))
+
+
+def _best(better: Better, readings: Sequence[Reading | None]) -> float | None:
+    """The best value where methods differ; None where there is nothing to compare."""
+    values = [reading.value for reading in readings if reading is not None and not math.isnan(reading.value)]
+    if better == "neither" or len(set(values)) < 2:
+        return None
+    if better == "one":
+        return min(values, key=lambda value: abs(math.log(value)) if value > 0.0 else math.inf)
+    return min(values) if better == "lower" else max(values)
+
+
+def number(value: float) -> str:
+    """Three significant digits; a dash for NaN."""
+    if math.isnan(value):
+        return "–"
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value == 0.0:
+        return "0"
+    magnitude = math.floor(math.log10(abs(value)))
+    if magnitude >= 5 or magnitude < -3:
+        return f"{value:.2e}"
+    return f"{value:.{max(0, 2 - magnitude)}f}".replace("-", "−")
+
+
+_ERROR_COLUMNS = (
+    *("frame", "stamp_ns", "failed", "rotation_deg", "translation_m", "translation_percent", "position_m"),
+    *("nees_per_dof", "reprojection_rms_px"),
+)
+
+
+def write_errors(path: Path, evaluation: Evaluation) -> None:
+    """errors.csv: one line per frame of the run; cells without a number are empty."""
+    run, truth, image = evaluation.run, evaluation.truth, evaluation.reprojection
+    judged = {} if truth is None else {int(row): k for k, row in enumerate(truth.rows)}
+    with CsvWriter(path, _ERROR_COLUMNS) as writer:
+        for row in range(len(run.frames)):
+            values = [math.nan] * 5
+            failed: object = ""
+            if truth is not None and row in judged:
+                k, raw, nees = judged[row], truth.raw, truth.consistency.nees
+                failed = int(raw.failed[k])
+                series = (raw.rotation_deg, raw.translation_m, raw.translation_percent, raw.position_m)
+                values = [float(each.values[k]) for each in series]
+                values.append(math.nan if nees is None else float(nees.values[k]))
+            values.append(math.nan if image is None else float(image.per_frame_px[row]))
+            cells: list[object] = [value if math.isfinite(value) else "" for value in values]
+            writer.write_rows([[int(run.frames[row]), int(run.stamps_ns[row]), failed, *cells]])
