@@ -77,3 +77,11 @@ def test_points_where_the_distortion_folds_back_are_nan() -> None:
     assert np.isfinite(pixels[0]).all()
     assert np.isnan(pixels[1]).all()
     assert distortion_limit(make_camera("pinhole")) == np.inf
+
+
+def test_a_pixel_that_no_ray_reaches_is_nan() -> None:
+    # r (1 - 0.2 r^2) is 0.861 at most
+    camera = make_camera("plumb_bob", [-0.2, 0.0, 0.0, 0.0, 0.0])
+    rays = unproject(camera, np.array([[320.0 + 800.0 * 0.86, 240.0], [320.0 + 800.0 * 0.87, 240.0]]))
+    assert np.isfinite(rays[0]).all()
+    assert np.isnan(rays[1]).all()

@@ -149,7 +149,8 @@ def test_colmap_pixels_are_shifted_by_half(tmp_path: Path) -> None:
         assert camera.K[0, 2] == 320.5
         assert camera.K[1, 2] == 240.5
     assert load_camera(path, name="1").distortion.tolist() == [-0.1, 0.0, 0.0, 0.0, 0.0]
-    assert load_camera(path, name="1").K[1, 1] == 500.0
+    assert numbers(load_camera(path, name="1")) == [500.0, 500.0, 320.5, 240.5]
+    assert numbers(load_camera(path, name="2")) == [500.0, 510.0, 320.5, 240.5]
     assert load_camera(path, name="2").distortion.tolist() == [-0.1, 0.02, 0.001, -0.001, 0.0]
     assert load_camera(path, name="3").model == "rational_polynomial"
     assert load_camera(path, name="4").model == "equidistant"

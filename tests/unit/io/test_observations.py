@@ -61,6 +61,7 @@ def test_cells_that_are_not_finite_pass_for_the_estimator_to_drop(tmp_path: Path
         (HEADER.replace("u_px", "u"), ":1: unknown column 'u'"),
         (HEADER.replace(",var_v", ""), ":1: expected frame,stamp_ns"),
         (HEADER.replace("var_v", "var_u"), ":1: expected frame,stamp_ns"),
+        (HEADER.replace("var_v", "var_v,var_v"), ":1: expected frame,stamp_ns"),
         (HEADER + ROWS + "8,1,a,1,2,3,4\n", ":5: expected 8 cells, got 7"),
         (HEADER + ROWS + "8,1,a,1,2,3,4,5,6\n", ":5: expected 8 cells, got 9"),
         (HEADER + "x,1,a,1,2,3,4,5\n", ":2: frame: expected a whole number, got 'x'"),

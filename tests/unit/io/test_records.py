@@ -67,6 +67,14 @@ def test_wrong_run_records(tmp_path: Path, text: str) -> None:
         read_run_record(tmp_path / "run.json")
 
 
+def test_a_run_record_of_another_version_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.json"
+    write_run_record(path, RunRecord(command="track", state="done", options=None, inputs=()))
+    path.write_text(path.read_text().replace('"version": 1', '"version": 2'))
+    with pytest.raises(InputError, match="version: expected 1, got 2"):
+        read_run_record(path)
+
+
 def test_json_never_holds_nan(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="JSON"):
         write_json(tmp_path / "m.json", {"a": float("nan")})
