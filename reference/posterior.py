@@ -125,20 +125,19 @@ class _Residuals:
 def solve(problem: Problem, X: np.ndarray, T_camera_target: np.ndarray, iterations: int = 200) -> Solution:
     """Minimise E from (X, T) by scipy's trust-region reflective method, docs/bound.md eq. (1).
 
-    Rotation vectors are taken about the poses of the last restart; three restarts keep them small. The covariance is
-    NaN where there is no prior: seven directions are then free.
+    Then reweighted Gauss-Newton about what was found, for the digits that a cost of 1e2 cannot show any more.
+    The covariance is NaN where there is no prior: seven directions are then free.
     """
     T, a = np.array(T_camera_target, dtype=float), problem.loss_threshold
-    for _ in range(3):
-        system = _Residuals(problem, T)
-        pad = np.zeros((len(system.A), 6 * system.k))
-        found = least_squares(
-            lambda x, r=system: np.r_[r.images(x, a).ravel(), r.prior(x)],
-            np.r_[X.ravel(), np.zeros(6 * system.k)],
-            lambda x, r=system, p=pad: np.vstack([r.jacobian(x, a), np.hstack([r.A, p])]),
-            method="trf", x_scale="jac", ftol=1e-15, xtol=1e-15, gtol=1e-15, max_nfev=iterations,
-        )  # fmt: skip
-        X, T = system.unpack(found.x)
+    system = _Residuals(problem, T)
+    pad = np.zeros((len(system.A), 6 * system.k))
+    found = least_squares(
+        lambda x: np.r_[system.images(x, a).ravel(), system.prior(x)],
+        np.r_[X.ravel(), np.zeros(6 * system.k)],
+        lambda x: np.vstack([system.jacobian(x, a), np.hstack([system.A, pad])]),
+        method="trf", x_scale="jac", ftol=1e-10, xtol=1e-10, gtol=1e-10, max_nfev=iterations,
+    )  # fmt: skip
+    X, T = system.unpack(found.x)
     if problem.P0 is not None:
         X, T = _polish(problem, X, T)
     return _summarise(problem, X, T)
@@ -160,8 +159,8 @@ def _normal_equations(problem: Problem, X: np.ndarray, T: np.ndarray) -> tuple[n
     return H, gradient, cost
 
 
-def _polish(problem: Problem, X: np.ndarray, T: np.ndarray, tolerance: float = 1e-9) -> tuple[np.ndarray, np.ndarray]:
-    """Reweighted Gauss-Newton to steps below `tolerance` sigma: digits that a cost of 1e2 cannot show any more."""
+def _polish(problem: Problem, X: np.ndarray, T: np.ndarray, tolerance: float = 1e-5) -> tuple[np.ndarray, np.ndarray]:
+    """Reweighted Gauss-Newton to steps below `tolerance` sigma."""
     for _ in range(100):
         H, gradient, _ = _normal_equations(problem, X, T)
         step = -np.linalg.solve(H, gradient)
