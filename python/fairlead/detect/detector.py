@@ -1,0 +1,56 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What every detector is, and which one a specification names, docs/fiducials.md section 1."""
+
+from typing import Protocol
+
+from fairlead.detect.fiducial import BoardDetector, CharucoBoard, Chessboard, TagDetector
+from fairlead.opencv import Image
+from fairlead.types import Target, View
+
+FORMS = "aruco:DICT_4X4_100, apriltag:36h11, charuco:7x5:DICT_5X5_100[:0.75], chessboard:9x6"
+
+
+class Detector(Protocol):
+    """Finds the landmarks of a target in an image."""
+
+    def detect(self, image: Image, frame: int, stamp_ns: int) -> View:
+        """The landmarks seen in one image (blue, green, red); an empty view where there are none."""
+        ...
+
+
+def detector_from_spec(spec: str, target: Target | None = None) -> Detector:
+    """A detector from its specification, which is one of FORMS.
+
+    With a target, only its landmarks are reported. Raises ValueError for another specification, an unknown family, a
+    board that cannot be, or a target none of whose landmarks the detector can see.
+    """
+    kind, _, rest = spec.partition(":")
+    if kind == "aruco" and rest:
+        return TagDetector(rest, target)
+    if kind == "apriltag" and rest:
+        return TagDetector(f"DICT_APRILTAG_{rest}", target)
+    if kind == "charuco":
+        size, _, family = rest.partition(":")
+        family, _, ratio = family.partition(":")
+        return BoardDetector(CharucoBoard(*_size(size, spec), family=family, marker_ratio=_ratio(ratio, spec)), target)
+    if kind == "chessboard":
+        return BoardDetector(Chessboard(*_size(rest, spec)), target)
+    raise ValueError(f"detector: expected one of {FORMS}, got {spec!r}")
+
+
+def _size(text: str, spec: str) -> tuple[int, int]:
+    columns, _, rows = text.partition("x")
+    if not (columns.isdecimal() and rows.isdecimal() and 2 <= int(columns) <= 100 and 2 <= int(rows) <= 100):
+        raise ValueError(f"detector: expected a board of 2x2 to 100x100 in {spec!r}, got {text!r}")
+    return int(columns), int(rows)
+
+
+def _ratio(text: str, spec: str) -> float:
+    try:
+        ratio = float(text or "0.75")
+    except ValueError:
+        ratio = float("nan")
+    if not 0.0 < ratio < 1.0:
+        raise ValueError(f"detector: expected tag side / square side between 0 and 1 in {spec!r}, got {text!r}")
+    return ratio
