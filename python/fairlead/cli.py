@@ -3,11 +3,13 @@
 """The command line: arguments in, exit status out. 0 done, 1 coverage too low, 2 bad input; 130, 143 interrupted."""
 
 import errno
+import json
 import os
 import signal
 import sys
 import threading
 from collections.abc import Sequence
+from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated
 
@@ -41,6 +43,7 @@ class Stopped(KeyboardInterrupt):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     before = {number: signal.signal(number, _stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    stopped = False
     try:
         config: Config = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
         return _run(config)
@@ -53,13 +56,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         full = " (what was written stays readable)" if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) else ""
         return _complain(f"{place}{error.strerror}{full}", 2)
     except Stopped as stop:
+        stopped = True
         status = _complain("stopped; what was written stays readable", 128 + stop.number)
         if threading.active_count() > 1:  # a batch is still being solved, and cannot be told
             sys.stderr.flush()
             os._exit(status)
         return status
     finally:
-        for number, handler in before.items():
+        for number, handler in before.items() if not stopped else ():
             signal.signal(number, handler)
 
 
@@ -86,10 +90,12 @@ def _run(config: Config) -> int:
         _show(demo(config))
         return 0
     if isinstance(config, EvaluateConfig):
-        sys.stdout.write(f"{run.evaluate(config)}\n")
+        _show_metrics(run.evaluate(config))
         return 0
     verb = run.track(config, progress_bar) if isinstance(config, TrackConfig) else run.refine(config, progress_bar)
     counts = f"{verb.frames} frames, {verb.frames_with_pose} with a pose ({verb.coverage:.1%})"
+    if verb.report is not None:
+        _show_metrics(verb.report)
     sys.stdout.write(f"{verb.output}: {counts}\n")
     if verb.coverage < config.min_coverage:
         return _complain(f"coverage {verb.coverage:.1%} is below --min-coverage {config.min_coverage:.1%}", 1)
@@ -106,15 +112,32 @@ def _show(result: "DemoResult") -> None:
     table.add_column("")
     table.add_column("drawing", justify="right")
     table.add_column("refined", justify="right", style="bold")
-    table.add_row("reprojection [px rms]", f"{result.drawing_px:.2f}", f"{result.refined_px:.2f}")
-    unseen = "  on the odd photographs, refined with the even ones"
+    table.add_row(r"reprojection \[px rms]", f"{result.drawing_px:.2f}", f"{result.refined_px:.2f}")
+    unseen = "  on odd photographs, refined with the even"
     table.add_row(unseen, f"{result.drawing_unseen_px:.2f}", f"{result.refined_unseen_px:.2f}")
     refined_mm = f"{refined.mean_mm:.2f} ± {refined.sigma_mm:.2f}"
-    table.add_row("mean side of the tags [mm]", f"{drawn.mean_mm:.2f} ± {drawn.sigma_mm:.2f}", refined_mm)
-    console = Console()
-    console.print(table)
-    console.print("The builder later corrected the side to 12.61 mm; nothing above was told that.")
-    console.print(f"{result.report} ({result.seconds:.1f} s)", soft_wrap=True)
+    table.add_row(r"mean side of the tags \[mm]", f"{drawn.mean_mm:.2f} ± {drawn.sigma_mm:.2f}", refined_mm)
+    Console().print(table)
+    sys.stdout.write("The builder later corrected the side to 12.61 mm; nothing above was told that.\n")
+    sys.stdout.write(f"{result.report} ({result.seconds:.1f} s)\n")
+
+
+def _show_metrics(report: Path) -> None:
+    """The numbers of metrics.json on stdout, and where the report is."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from fairlead.evaluate import METRICS
+
+    runs = json.loads((report.parent / "metrics.json").read_text(encoding="utf-8"))["runs"]
+    table = Table("", *runs, "")
+    for metric in METRICS:
+        cells = [each["metrics"].get(metric.key) for each in runs.values()]
+        if any(cell is not None for cell in cells):
+            texts = ["" if cell is None else f"{float(cell):.4g}" for cell in cells]
+            table.add_row(metric.label, *texts, "" if metric.unit == "-" else metric.unit)
+    Console().print(table)
+    sys.stdout.write(f"{report}\n")
 
 
 if __name__ == "__main__":

@@ -15,17 +15,18 @@ from pathlib import Path
 import numpy as np
 
 from fairlead import run
-from fairlead.baselines.epnp import EpnpTracker
+from fairlead.baselines.observed import observed
+from fairlead.baselines.single_view import solve_view
 from fairlead.config import DemoConfig, RefineConfig, TrackConfig
 from fairlead.evaluate import evaluate_runs
-from fairlead.evaluate.reprojection import reproject
+from fairlead.geometry import project, transform
 from fairlead.io.camera import load_camera
 from fairlead.io.observations import read_views
 from fairlead.io.poses import read_poses
 from fairlead.io.shipped import shipped_data
 from fairlead.io.target import load_target
-from fairlead.tracker import refine
-from fairlead.types import Camera, Estimate, Target, View
+from fairlead.tracker import LandmarkIndex, refine
+from fairlead.types import Camera, Matrix4, Pixels, Target, View
 
 _CORNERS = ("tl", "tr", "br", "bl")
 
@@ -70,13 +71,14 @@ def demo(config: DemoConfig) -> DemoResult:
     run.track(TrackConfig(source=source, target=told, camera=calibration, output=runs["epnp"], method="epnp"))
     target, camera, views = load_target(told), load_camera(calibration), list(read_views(source))
     refined = load_target(runs["refine"] / "target_refined.toml")
+    joint = read_poses(runs["refine"] / "poses.csv")
     half = refine(views[::2], target, camera).model
     return DemoResult(
         report=evaluate_runs(runs, output=config.output),
         photographs=len(views),
         corners=sum(len(view.landmarks) for view in views),
-        drawing_px=_rms_px(views, read_poses(runs["epnp"] / "poses.csv"), camera, target),
-        refined_px=_rms_px(views, read_poses(runs["refine"] / "poses.csv"), camera, refined),
+        drawing_px=_each_alone_px(views, camera, target),
+        refined_px=_rms_px(views, [each.T_camera_target if each.ok else None for each in joint], camera, refined),
         drawing_unseen_px=_each_alone_px(views[1::2], camera, target),
         refined_unseen_px=_each_alone_px(views[1::2], camera, half),
         drawing_side=tag_side(target),
@@ -86,14 +88,22 @@ def demo(config: DemoConfig) -> DemoResult:
 
 
 def _each_alone_px(views: Sequence[View], camera: Camera, model: Target) -> float:
-    tracker = EpnpTracker(model, camera)
-    return _rms_px(views, [tracker.update(view) for view in views], camera, model)
+    """Every photograph with the pose that fits it best, the landmarks being taken as exact."""
+    index = LandmarkIndex(model.landmarks)
+    found = [solve_view(observed(view, index), model.positions, camera, refined=True) for view in views]
+    poses = [None if isinstance(each, str) else each.T_camera_target for each in found]
+    return _rms_px(views, poses, camera, model)
 
 
-def _rms_px(views: Sequence[View], estimates: Sequence[Estimate], camera: Camera, model: Target) -> float:
-    """Over all corners of the photographs that got a pose; NaN if none did."""
-    residuals = reproject(views, estimates, camera, [model] * len(estimates))
-    return float("nan") if residuals is None else residuals.summary.rms
+def _rms_px(views: Sequence[View], poses: Sequence[Matrix4 | None], camera: Camera, model: Target) -> float:
+    """Root mean square of |pi(T X_j) - z_j| over all corners; NaN if a photograph has no pose."""
+    errors: list[Pixels] = []
+    for view, T in zip(views, poses, strict=True):
+        if T is None:
+            return float("nan")
+        X = model.positions[[model.landmarks.index(name) for name in view.landmarks]]
+        errors.append(project(camera, transform(T, X)) - view.pixels)
+    return float(np.sqrt(np.mean(np.sum(np.concatenate(errors) ** 2, axis=1))))
 
 
 def tag_side(model: Target) -> Side:

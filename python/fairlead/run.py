@@ -10,15 +10,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
+from fairlead.detect import Detector, detector_from_spec
 from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
 from fairlead.io.options import load_options
+from fairlead.io.poses import read_truth
 from fairlead.io.run_record import RunRecord, input_file
 from fairlead.io.target import load_target
 from fairlead.io.timing import Timing
 from fairlead.progress import ProgressFactory, silent
 from fairlead.sinks.run_folder import WRITTEN, RunFolder
-from fairlead.sources.source import Detector, ImageSource, ViewSource
+from fairlead.sources.image_folder import ImageFolderSource
+from fairlead.sources.source import ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
 from fairlead.tracker import Refinement, Tracker, TrackerOptions
@@ -36,6 +39,8 @@ class RunSummary:
     output: Path
     frames: int
     frames_with_pose: int
+    report: Path | None
+    """Where truth was given."""
 
     @property
     def coverage(self) -> float:
@@ -155,10 +160,11 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
         raise InputError(path, "expected observations (.csv, .parquet) or a folder of images")
     if config.detector is None:
         raise UsageError(f"{path} is a folder of images: expected --detector too")
-    from fairlead.detect import detector_from_spec
-    from fairlead.sources.image_folder import ImageFolderSource
-
-    return DetectedViews(ImageFolderSource(path, camera, fps=config.fps), detector_from_spec(config.detector, target))
+    try:
+        detector = detector_from_spec(config.detector, target)
+    except ValueError as error:
+        raise UsageError(f"--detector: {str(error).removeprefix('detector: ')}") from error
+    return DetectedViews(ImageFolderSource(path, camera, fps=config.fps), detector)
 
 
 def make_estimator(config: TrackConfig, options: TrackerOptions, target: Target, camera: Camera) -> PoseEstimator:
@@ -195,8 +201,8 @@ def _load(config: InputConfig) -> tuple[Target, Camera]:
     for path in _input_paths(config).values():
         if path.name in WRITTEN and path.resolve().parent == config.output.resolve():
             raise UsageError(f"--output: {config.output} would write over the input {path}")
-    if config.truth is not None and not config.truth.is_file():
-        raise InputError(config.truth, "is not there; expected truth.csv")
+    if config.truth is not None:
+        read_truth(config.truth)  # found out now rather than at the end of a long run
     target = load_target(config.target)
     if len(target.landmarks) < MIN_LANDMARKS:
         raise InputError(config.target, f"expected at least {MIN_LANDMARKS} landmarks, got {len(target.landmarks)}")
@@ -237,6 +243,9 @@ def _record(command: str, config: InputConfig, options: TrackerOptions | None) -
 
 
 def _finish(config: InputConfig, record: RunRecord) -> RunSummary:
+    report = None
     if config.truth is not None:
-        evaluate(EvaluateConfig(run=config.output, truth=config.truth))
-    return RunSummary(output=config.output, frames=record.frames, frames_with_pose=record.frames_with_pose)
+        report = evaluate(EvaluateConfig(run=config.output, truth=config.truth))
+    return RunSummary(
+        output=config.output, frames=record.frames, frames_with_pose=record.frames_with_pose, report=report
+    )

@@ -114,7 +114,7 @@ def test_files_that_are_not_there_and_arguments_that_do_not_go_together(
         ({"source": flight.folder / "none.mkv"}, "expected observations (.csv, .parquet) or a folder of images"),
         ({"target": none}, "No such file"),
         ({"camera": none}, "No such file"),
-        ({"truth": none}, "is not there; expected truth.csv"),
+        ({"truth": none}, "No such file"),
         ({"options": none}, "No such file"),
         ({"camera_name": "cam0"}, "no camera 'cam0'; did you mean 'c'?"),
         ({"detector": "aruco:DICT_4X4_100"}, "holds observations already"),

@@ -50,12 +50,3 @@ class ImageSource(Protocol):
     def count(self) -> int:
         """Work to be done: the number of images."""
         ...
-
-
-@runtime_checkable
-class Detector(Protocol):
-    """Finds the landmarks of the target in an image."""
-
-    def detect(self, image: Image, *, frame: int, stamp_ns: int) -> View:
-        """The observations of one image; none is no error."""
-        ...
