@@ -118,7 +118,7 @@ def _show(result: "DemoResult") -> None:
     refined_mm = f"{refined.mean_mm:.2f} ± {refined.sigma_mm:.2f}"
     table.add_row(r"mean side of the tags \[mm]", f"{drawn.mean_mm:.2f} ± {drawn.sigma_mm:.2f}", refined_mm)
     Console().print(table)
-    sys.stdout.write("The builder later corrected the side to 12.61 mm; nothing above was told that.\n")
+    sys.stdout.write("Photographs do not tell the scale: it is that of the drawing as a whole.\n")
     sys.stdout.write(f"{result.report} ({result.seconds:.1f} s)\n")
 
 

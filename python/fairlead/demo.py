@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`fairlead demo`: a pen with eight tags, photographed by somebody else, whose drawing is wrong.
 
-The corners were detected in 16 real photographs (data/marker_pen/README.md). The drawing takes a tag's side as 13.0 mm;
-the builder later gave it as 12.61 mm. Nothing here is told that.
+The corners were detected in 16 real photographs (data/marker_pen/README.md). Nobody surveyed where the tags really are.
 """
 
 import time

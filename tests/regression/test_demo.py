@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The demo: a rough drawing and real photographs in, a better model out, judged on photographs that it has not seen."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fairlead.cli import main
+from fairlead.config import DemoConfig
+from fairlead.demo import demo, tag_side
+from fairlead.io.run_record import read_run_record
+from fairlead.io.shipped import shipped_data
+from fairlead.io.target import load_target
+from fairlead.types import Target
+
+
+def test_the_refined_model_is_better_also_on_photographs_that_it_has_not_seen(tmp_path: Path) -> None:
+    result = demo(DemoConfig(output=tmp_path))
+    assert result.photographs == 16
+    assert result.corners >= 200
+    assert result.refined_px <= 0.42
+    assert result.refined_unseen_px <= 0.70
+    assert result.drawing_px > 1.0
+    assert result.drawing_unseen_px > 1.0
+    assert result.report == tmp_path / "report.html"
+    for name in ("refine", "map", "epnp"):
+        assert read_run_record(tmp_path / name / "run.json").state == "done"
+        assert f"{name}" in result.report.read_text()
+
+
+def test_the_demo_prints_its_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["demo", "-o", str(tmp_path)]) == 0
+    output = capsys.readouterr()
+    for word in ("reprojection [px rms]", "mean side of the tags [mm]", "13.00", str(tmp_path / "report.html")):
+        assert word in output.out
+    assert output.err == ""
+
+
+def test_side_of_tags_and_its_sigma_by_hand() -> None:
+    # one tag of 10 mm; only tr moves, 1 mm along x: the top side gets 1 mm longer, the right side stays to first order
+    corners = np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [0.01, 0.01, 0.0], [0.0, 0.01, 0.0]])
+    covariance = np.zeros((12, 12))
+    covariance[3, 3] = 1e-6
+    names = ("tag1_tl", "tag1_tr", "tag1_br", "tag1_bl")
+    side = tag_side(Target(name="t", landmarks=names, positions=corners, covariance=covariance))
+    assert np.isclose(side.mean_mm, 10.0)
+    assert np.isclose(side.sigma_mm, 0.25)
+
+
+def test_the_drawing_comes_with_the_program() -> None:
+    assert load_target(shipped_data("marker_pen") / "target.toml").name == "marker_pen"
+    with pytest.raises(FileNotFoundError, match="did not come with this installation"):
+        shipped_data("nothing")
