@@ -10,7 +10,7 @@ SHELL := /bin/bash
 MAKEFLAGS += --no-print-directory
 
 PYTHON ?= python3
-JOBS ?= 2
+JOBS ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := build/stamps
@@ -137,7 +137,8 @@ $(STAMPS)/cpp-test-sanitized: $(STAMPS)/environment VERSION $(CMAKE_FILES) $(CPP
 
 # One stamp per translation unit: clang-tidy takes seconds for each.
 TIDY_STAMPS := $(CPP_UNITS:%=$(STAMPS)/tidy/%)
-$(STAMPS)/clang-tidy: $(TIDY_STAMPS)
+$(STAMPS)/clang-tidy: .clang-tidy $(filter cpp/%,$(CPP_SOURCES)) | $(STAMPS)/compile-commands
+	$(MAKE) --jobs=$(JOBS) $(TIDY_STAMPS)
 	@touch $@
 $(TIDY_STAMPS): $(STAMPS)/tidy/%: % .clang-tidy $(filter %.hpp,$(CPP_SOURCES)) | $(STAMPS)/compile-commands
 	@mkdir -p $(@D)
