@@ -11,9 +11,8 @@ from fairlead.cli import main
 from tests.regression.conftest import Flight
 
 
-@pytest.mark.parametrize("verb", ["track", "refine"])
-def test_truth_gives_numbers_and_a_report(flight: Flight, verb: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert flight.run(verb, truth=flight.folder / "truth.csv") == 0
+def test_truth_gives_numbers_and_a_report(flight: Flight, capsys: pytest.CaptureFixture[str]) -> None:
+    assert flight.run(truth=flight.folder / "truth.csv") == 0
     output = capsys.readouterr()
     assert output.err == ""
     assert "rotation, mean" in output.out
