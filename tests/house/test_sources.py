@@ -66,24 +66,35 @@ def test_no_file_is_named_after_nothing(project_files: list[Path], repository: P
     assert [str(f) for f in named if any(FORBIDDEN_NAMES.match(part) for part in (*f.parts[:-1], f.stem))] == []
 
 
-def public_arguments(text: str) -> list[str]:
-    """`function(argument)` for each argument of each public function."""
+BARE_NAME = re.compile(r"^(pose|poses|transform|transformation|q|quat|quaternion)$")
+ARRAY = re.compile(r"Matrix|Poses|Vector|ndarray|Array|Float")
+
+
+def bare_arguments(text: str) -> list[str]:
+    """`function(argument)` for each array argument whose name says neither its frames nor its order."""
     found: list[str] = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
-            arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
-            found.extend(f"{node.name}({a.arg})" for a in arguments)
+            for a in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs):
+                annotation = ast.unparse(a.annotation) if a.annotation else "ndarray"
+                if BARE_NAME.match(a.arg) and ARRAY.search(annotation):
+                    found.append(f"{node.name}({a.arg})")
     return found
 
 
 def test_a_pose_says_of_which_frame_in_which(code: list[Path], repository: Path) -> None:
-    bare = re.compile(r"\((pose|poses|transform|transformation|q|quat|quaternion)\)$")
+    package = repository / "python" / "fairlead"
     found = {
-        str(f.relative_to(repository)): [a for a in public_arguments(f.read_text(encoding="utf-8")) if bare.search(a)]
+        str(f.relative_to(repository)): bare_arguments(f.read_text(encoding="utf-8"))
         for f in code
-        if f.suffix == ".py" and f.relative_to(repository).parts[:2] == ("python", "fairlead")
+        if f.is_relative_to(package) and f.suffix == ".py"
     }
     assert {name: arguments for name, arguments in found.items() if arguments} == {}
+
+
+def test_a_pose_that_says_nothing_is_found() -> None:
+    assert bare_arguments("def f(pose: Matrix4) -> None: ...") == ["f(pose)"]
+    assert bare_arguments("def f(pose: SingleView, T_camera_target: Matrix4) -> None: ...") == []
 
 
 def test_nothing_belongs_to_one_machine(project_files: list[Path], repository: Path) -> None:
