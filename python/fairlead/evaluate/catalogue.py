@@ -79,6 +79,7 @@ METRICS: tuple[Metric, ...] = (
     _metric("landmarks_se3_m", "landmarks", "refined model, rigid", "m", readers.model("se3", after=True)),
     _metric("landmarks_before_sim3_m", "landmarks", "given model, similarity", "m", readers.model("sim3", after=False)),
     _metric("landmarks_sim3_m", "landmarks", "refined model, similarity", "m", readers.model("sim3", after=True)),
+    _metric("landmark_shift_m", "landmarks", "landmarks moved by", "m", readers.landmark_shift, "neither"),
     _metric("pose_nees", "consistency", "NEES of the pose / dof", "-", readers.nees(readers.pose_nees), "one"),
     _metric(
         "pose_inside_95_percent", "consistency", "poses inside 95 %", "%", of_truth(readers.share_inside), "neither"

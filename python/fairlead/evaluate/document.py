@@ -14,7 +14,8 @@ from fairlead.geometry import Similarity
 
 VERSION = 1
 
-Json = None | bool | int | float | str | list["Json"] | dict[str, "Json"]
+Json = object
+"""None, bool, int, float, str, or lists and dicts of them."""
 
 
 def evaluation_to_json(evaluation: Evaluation) -> dict[str, Json]:

@@ -147,7 +147,7 @@ def _run(estimates: Sequence[Estimate], target0: Target, estimated: Target | Non
         stamps_ns=np.array(stamps, dtype=np.int64),
         seconds=np.array([1e-9 * (stamp - stamps[0]) for stamp in stamps], dtype=np.float64),
         ok=np.array([estimate.ok for estimate in estimates], dtype=bool),
-        T_camera_target=np.array([estimate.T_camera_target for estimate in estimates]).reshape(-1, 4, 4),
+        T_camera_target=_stacked([estimate.T_camera_target for estimate in estimates], 4),
         target0=target0,
         target_estimated=estimated,
         target_true=true,
@@ -165,9 +165,9 @@ def _against_truth(
 ) -> AgainstTruth:
     matching = match_by_stamp(truth, estimates, tolerance_ns=tolerance_ns)
     rows = np.array([j for _, j in matching.pairs], dtype=np.int64)
-    T_true = np.array([truth[i].T_camera_target for i, _ in matching.pairs]).reshape(-1, 4, 4)
+    T_true = _stacked([truth[i].T_camera_target for i, _ in matching.pairs], 4)
     T = run.T_camera_target[rows]
-    covariances = np.array([estimates[j].covariance for j in rows]).reshape(-1, 6, 6)
+    covariances = _stacked([estimates[j].covariance for j in rows], 6)
     ok = run.ok[rows]
     vertices = load_vertices(mesh) if isinstance(mesh, Path) else mesh
     return AgainstTruth(
@@ -181,3 +181,8 @@ def _against_truth(
         trajectory=trajectory_errors(T[ok], T_true[ok]),
         surface=None if vertices is None else surface_errors(T, T_true, vertices, camera),
     )
+
+
+def _stacked(matrices: Sequence[np.ndarray], size: int) -> np.ndarray:
+    """(k, size, size), for k = 0 too."""
+    return np.array(matrices, dtype=np.float64).reshape(len(matrices), size, size)

@@ -15,8 +15,8 @@ from fairlead.evaluate.consistency import (
     nees,
     normalised_square,
 )
-from fairlead.evaluate.summary import Series, Summary, summarise
-from fairlead.types import Target
+from fairlead.evaluate.summary import Series, Summary, root_mean_square, summarise
+from fairlead.types import Points3, Target
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -111,14 +111,15 @@ def model_change(before: Target, after: Target) -> ModelChange | None:
         names=names,
         shifts_m=shifts,
         summary=summarise(shifts),
-        sigma_before_m=_coordinate_sigma(before),
-        sigma_after_m=_coordinate_sigma(after),
+        sigma_before_m=root_mean_square(coordinate_sigmas(before).ravel()),
+        sigma_after_m=root_mean_square(coordinate_sigmas(after).ravel()),
         prior_factor=_prior_factor(before, after) if before.landmarks == after.landmarks else None,
     )
 
 
-def _coordinate_sigma(target: Target) -> float:
-    return float(np.sqrt(np.mean(np.diag(target.covariance))))
+def coordinate_sigmas(target: Target) -> Points3:
+    """Root of the variance of each coordinate of each landmark [m]."""
+    return np.sqrt(np.clip(np.diag(target.covariance), 0.0, None)).reshape(-1, 3)
 
 
 def _prior_factor(before: Target, after: Target) -> float | None:

@@ -18,8 +18,10 @@ class Reading:
     """One number of one run."""
 
     value: float
-    detail: str = ""
-    """What stands beside it in small print."""
+    spread: tuple[tuple[str, float], ...] = ()
+    """More numbers of the same unit, named, for the small print."""
+    note: str = ""
+    """More small print."""
     mark: Mark | None = None
 
 
@@ -40,7 +42,7 @@ class Metric:
     read: Read
 
 
-def graded(value: float, good: tuple[float, float], fair: tuple[float, float], detail: str = "") -> Reading:
+def graded(value: float, good: tuple[float, float], fair: tuple[float, float], note: str = "") -> Reading:
     """Marked by the narrowest of the two intervals that holds the value, ends included."""
     mark: Mark = "good" if good[0] <= value <= good[1] else "fair" if fair[0] <= value <= fair[1] else "bad"
-    return Reading(value=value, detail=detail, mark=mark)
+    return Reading(value=value, note=note, mark=mark)

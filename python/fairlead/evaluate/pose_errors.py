@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from fairlead.evaluate.alignment import align_poses
-from fairlead.evaluate.consistency import Nees, NormalisedSquare, nees, pose_difference, pose_normalised_square
+from fairlead.evaluate.consistency import Nees, NormalisedSquare, nees, normalised_square, pose_difference
 from fairlead.evaluate.failures import (
     FAILURE_POSITION_PERCENT,
     FAILURE_ROTATION_DEG,
@@ -112,7 +112,7 @@ def pose_consistency(T_estimated: Poses, T_true: Poses, covariances: Covariances
             samples.append(None)
             continue
         xi[k] = pose_difference(T, T_k)
-        samples.append(pose_normalised_square(T, T_k, P))
+        samples.append(normalised_square(xi[k], P))
     return PoseConsistency(
         xi=xi, sigma=np.sqrt(np.diagonal(covariances, axis1=1, axis2=2).astype(np.float64)), nees=nees(samples)
     )

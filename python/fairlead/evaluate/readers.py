@@ -12,6 +12,7 @@ from fairlead.evaluate.pose_errors import ErrorSeries, PoseErrors
 from fairlead.evaluate.summary import Summary
 from fairlead.evaluate.surface import SurfaceErrors
 from fairlead.evaluate.trajectory import TrajectoryErrors
+from fairlead.evaluate.units import number
 
 
 def coverage(evaluation: Evaluation) -> Reading:
@@ -33,8 +34,8 @@ def of_truth(read: Callable[[AgainstTruth], Reading | None]) -> Read:
 def failures(truth: AgainstTruth) -> Reading:
     """Frames without a pose, or with one beyond a limit [%]."""
     found = truth.raw.failures
-    detail = f"{found.n_without_pose} without pose, {found.n_wrong} wrong, of {found.n_frames}"
-    return graded(100.0 * found.rate, (0.0, 0.0), (0.0, 5.0), detail)
+    note = f"{found.n_without_pose} without pose, {found.n_wrong} wrong, of {found.n_frames}"
+    return graded(100.0 * found.rate, (0.0, 0.0), (0.0, 5.0), note)
 
 
 def pose(alignment: Alignment, pick: Callable[[PoseErrors], ErrorSeries], *, penalised: bool = False) -> Read:
@@ -46,10 +47,10 @@ def pose(alignment: Alignment, pick: Callable[[PoseErrors], ErrorSeries], *, pen
             return None
         series = pick(errors)
         if penalised:
-            return Reading(value=series.penalised, detail="all judged frames")
+            return Reading(value=series.penalised, note="all judged frames")
         summary = series.summary
-        spread = f"rms {summary.rms:.3g} · median {summary.median:.3g} · p95 {summary.p95:.3g}"
-        return Reading(value=summary.mean, detail=spread)
+        spread = (("rms", summary.rms), ("median", summary.median), ("p95", summary.p95))
+        return Reading(value=summary.mean, spread=spread)
 
     return of_truth(read)
 
@@ -63,9 +64,9 @@ def model(alignment: Alignment, *, after: bool) -> Read:
         errors = refined if after else before
         if errors is None or before is None:
             return None
-        detail = f"mean {errors.summary.mean:.3g} · worst {errors.summary.maximum:.3g}"
+        spread = (("mean", errors.summary.mean), ("worst", errors.summary.maximum))
         mark = _compared(errors.summary.rms, before.summary.rms) if after else None
-        return Reading(value=errors.summary.rms, detail=detail, mark=mark)
+        return Reading(value=errors.summary.rms, spread=spread, mark=mark)
 
     return read
 
@@ -83,13 +84,13 @@ def nees(pick: Callable[[Evaluation], Nees | None]) -> Read:
         if found is None:
             return None
         band, one = found.band999, found.band999_one
-        detail = f"99.9 % band {band.lower:.2f}–{band.upper:.2f}"
+        note = f"99.9 % band {band.lower:.2f}–{band.upper:.2f}"
         if found.n_samples > 1:
-            detail += f"; of one pose {one.lower:.2f}–{one.upper:.2f}"
+            note += f"; of one pose {one.lower:.2f}–{one.upper:.2f}"
         if found.n_outside:
-            detail += f"; {found.n_outside} with an error called impossible"
+            note += f"; {found.n_outside} with an error called impossible"
         mark: Mark = "good" if band.holds(found.per_dof) else "fair" if one.holds(found.per_dof) else "bad"
-        return Reading(value=found.per_dof, detail=detail, mark="bad" if found.n_outside else mark)
+        return Reading(value=found.per_dof, note=note, mark="bad" if found.n_outside else mark)
 
     return read
 
@@ -107,7 +108,7 @@ def model_nees(evaluation: Evaluation) -> Nees | None:
 def share_inside(truth: AgainstTruth) -> Reading | None:
     """Poses inside their own 95 % band [%]."""
     found = truth.consistency.nees
-    return None if found is None else Reading(value=100.0 * found.share_inside_95, detail="expected 95")
+    return None if found is None else Reading(value=100.0 * found.share_inside_95, note="expected 95")
 
 
 def prior_factor(evaluation: Evaluation) -> Reading | None:
@@ -115,8 +116,13 @@ def prior_factor(evaluation: Evaluation) -> Reading | None:
     change = evaluation.model_change
     if change is None or change.prior_factor is None:
         return None
-    detail = f"landmarks moved {change.summary.rms:.3g} m rms"
-    return graded(change.prior_factor, (0.5, 1.5), (1.0 / 3.0, 3.0), detail)
+    return graded(change.prior_factor, (0.5, 1.5), (0.0, 3.0))
+
+
+def landmark_shift(evaluation: Evaluation) -> Reading | None:
+    """Rms distance between given and refined landmarks [m]."""
+    change = evaluation.model_change
+    return None if change is None else Reading(value=change.summary.rms, spread=(("most", change.summary.maximum),))
 
 
 def reprojection(evaluation: Evaluation) -> Reading | None:
@@ -124,10 +130,8 @@ def reprojection(evaluation: Evaluation) -> Reading | None:
     found = evaluation.reprojection
     if found is None:
         return None
-    detail = (
-        f"median {found.summary.median:.3g} · without outliers {found.rms_in_gate_px:.3g} · n {found.summary.count}"
-    )
-    return Reading(value=found.summary.rms, detail=detail)
+    spread = (("median", found.summary.median), ("without outliers", found.rms_in_gate_px))
+    return Reading(value=found.summary.rms, spread=spread, note=f"{found.summary.count} observations")
 
 
 def noise_factor(evaluation: Evaluation) -> Reading | None:
@@ -135,7 +139,7 @@ def noise_factor(evaluation: Evaluation) -> Reading | None:
     found = evaluation.reprojection
     if found is None:
         return None
-    return graded(found.robust_noise_factor, (0.8, 1.25), (0.5, 2.0), f"with outliers {found.noise_factor:.3g}")
+    return graded(found.robust_noise_factor, (0.8, 1.25), (0.0, 2.0), f"with outliers {number(found.noise_factor)}")
 
 
 def outliers(evaluation: Evaluation) -> Reading | None:
@@ -153,7 +157,7 @@ def surface(pick: Callable[[SurfaceErrors], tuple[Summary | None, float | None]]
         summary, recall = pick(truth.surface)
         if summary is None or recall is None:
             return None
-        return Reading(value=summary.mean, detail=f"recall {100.0 * recall:.1f} %")
+        return Reading(value=summary.mean, note=f"recall {100.0 * recall:.1f} %")
 
     return of_truth(read)
 
@@ -163,7 +167,7 @@ def path(pick: Callable[[TrajectoryErrors], Summary | None]) -> Read:
 
     def read(truth: AgainstTruth) -> Reading | None:
         found = None if truth.trajectory is None else pick(truth.trajectory)
-        return None if found is None else Reading(value=found.rms, detail=f"max {found.maximum:.3g}")
+        return None if found is None else Reading(value=found.rms, spread=(("max", found.maximum),))
 
     return of_truth(read)
 
@@ -171,10 +175,10 @@ def path(pick: Callable[[TrajectoryErrors], Summary | None]) -> Read:
 def update_time_p50(evaluation: Evaluation) -> Reading | None:
     """Median of the update time [ms]."""
     found = evaluation.update_time
-    return None if found is None else Reading(value=found.p50_ms, detail=f"mean {found.mean_ms:.3g}")
+    return None if found is None else Reading(value=found.p50_ms, spread=(("mean", found.mean_ms),))
 
 
 def update_time_p99(evaluation: Evaluation) -> Reading | None:
     """99 % quantile of the update time [ms]."""
     found = evaluation.update_time
-    return None if found is None else Reading(value=found.p99_ms, detail=f"max {found.maximum_ms:.3g}")
+    return None if found is None else Reading(value=found.p99_ms, spread=(("max", found.maximum_ms),))

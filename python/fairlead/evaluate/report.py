@@ -89,6 +89,7 @@ def render_report(evaluations: Mapping[str, Evaluation], header: ReportHeader) -
         main=main,
         run=evaluations[main],
         methods=names,
+        failing=any(each.truth is not None and bool(each.truth.raw.failed.any()) for each in evaluations.values()),
         dense=is_long(len(evaluations[main].run.frames)),
         colours={name: VARIABLES[colour_of(name, names)] for name in names},
         tiles=tiles(evaluations),
@@ -131,7 +132,8 @@ def _model_plates(evaluations: Mapping[str, Evaluation], main: str) -> list[Plat
     del main
     raw = _plate("landmarks", figures.landmarks_before_and_after(evaluations, "raw"))
     aligned = _plate("landmarks-sim3", figures.landmarks_before_and_after(evaluations, "sim3"), folded=True)
-    return raw + aligned + _plate("model", figures.model_over_time(evaluations))
+    shifts = [] if raw else _plate("shifts", figures.landmark_shifts(evaluations))
+    return shifts + raw + aligned + _plate("model", figures.model_over_time(evaluations))
 
 
 def _other_plates(evaluations: Mapping[str, Evaluation], main: str) -> list[Plate]:

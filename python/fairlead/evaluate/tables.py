@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import get_args
 
+import numpy as np
+
 from fairlead.evaluate.catalogue import METRICS
-from fairlead.evaluate.evaluation import Evaluation
+from fairlead.evaluate.evaluation import AgainstTruth, Evaluation
 from fairlead.evaluate.metric import Better, Group, Mark, Metric, Reading
+from fairlead.evaluate.units import LengthUnit, length_unit, number
 from fairlead.io.csv_lines import CsvWriter
 
 
@@ -45,25 +48,29 @@ class Table:
 
 def tables(evaluations: Mapping[str, Evaluation]) -> tuple[Table, ...]:
     """All groups that at least one run has numbers for; columns in the order of `evaluations`."""
+    unit = length_unit(evaluations.values())
     built: list[Table] = []
     for key in get_args(Group):
-        rows = [_row(metric, list(evaluations.values())) for metric in METRICS if metric.group == key]
+        rows = [_row(metric, list(evaluations.values()), unit) for metric in METRICS if metric.group == key]
         present = tuple(row for row in rows if any(cell is not None for cell in row.cells))
         if present:
             built.append(Table(key=key, rows=present))
     return tuple(built)
 
 
-def _row(metric: Metric, evaluations: Sequence[Evaluation]) -> Row:
+def _row(metric: Metric, evaluations: Sequence[Evaluation], unit: LengthUnit) -> Row:
     readings = [metric.read(evaluation) for evaluation in evaluations]
     best = _best(metric.better, readings)
     cells = [
-        None
-        if reading is None
-        else Cell(text=number(reading.value), detail=reading.detail, mark=reading.mark, best=reading.value == best)
-        for reading in readings
+        None if reading is None else _cell(metric, reading, unit, best=reading.value == best) for reading in readings
     ]
-    return Row(key=metric.key, label=metric.label, unit=metric.unit, cells=tuple(cells))
+    return Row(key=metric.key, label=metric.label, unit=unit.renamed(metric.unit), cells=tuple(cells))
+
+
+def _cell(metric: Metric, reading: Reading, unit: LengthUnit, *, best: bool) -> Cell:
+    spread = [f"{name} {number(unit.scaled(value, metric.unit))}" for name, value in reading.spread]
+    detail = " · ".join([*spread, *([reading.note] if reading.note else [])])
+    return Cell(text=number(unit.scaled(reading.value, metric.unit)), detail=detail, mark=reading.mark, best=best)
 
 
 def _best(better: Better, readings: Sequence[Reading | None]) -> float | None:
@@ -76,23 +83,10 @@ def _best(better: Better, readings: Sequence[Reading | None]) -> float | None:
     return min(values) if better == "lower" else max(values)
 
 
-def number(value: float) -> str:
-    """Three significant digits; a dash for NaN."""
-    if math.isnan(value):
-        return "–"
-    if math.isinf(value):
-        return "∞" if value > 0 else "−∞"
-    if value == 0.0:
-        return "0"
-    magnitude = math.floor(math.log10(abs(value)))
-    if magnitude >= 5 or magnitude < -3:
-        return f"{value:.2e}"
-    return f"{value:.{max(0, 2 - magnitude)}f}".replace("-", "−")
-
-
+_POSE_COLUMNS = ("rotation_deg", "translation_m", "position_m")
 _ERROR_COLUMNS = (
-    *("frame", "stamp_ns", "failed", "rotation_deg", "translation_m", "translation_percent", "position_m"),
-    *("nees_per_dof", "reprojection_rms_px"),
+    *("frame", "stamp_ns", "failed", "range_m", *_POSE_COLUMNS),
+    *("rotation_sim3_deg", "translation_sim3_m", "position_sim3_m", "nees_per_dof", "reprojection_rms_px"),
 )
 
 
@@ -102,14 +96,20 @@ def write_errors(path: Path, evaluation: Evaluation) -> None:
     judged = {} if truth is None else {int(row): k for k, row in enumerate(truth.rows)}
     with CsvWriter(path, _ERROR_COLUMNS) as writer:
         for row in range(len(run.frames)):
-            values = [math.nan] * 5
-            failed: object = ""
-            if truth is not None and row in judged:
-                k, raw, nees = judged[row], truth.raw, truth.consistency.nees
-                failed = int(raw.failed[k])
-                series = (raw.rotation_deg, raw.translation_m, raw.translation_percent, raw.position_m)
-                values = [float(each.values[k]) for each in series]
-                values.append(math.nan if nees is None else float(nees.values[k]))
+            k = judged.get(row)
+            failed, values = "", [math.nan] * 8
+            if truth is not None and k is not None:
+                failed, values = str(int(truth.raw.failed[k])), _errors_of(truth, k)
             values.append(math.nan if image is None else float(image.per_frame_px[row]))
             cells: list[object] = [value if math.isfinite(value) else "" for value in values]
             writer.write_rows([[int(run.frames[row]), int(run.stamps_ns[row]), failed, *cells]])
+
+
+def _errors_of(truth: AgainstTruth, k: int) -> list[float]:
+    """The numbers of one judged frame in the order of the columns."""
+    nees = truth.consistency.nees
+    values = [float(np.linalg.norm(truth.T_true[k, :3, 3]))]
+    for errors in (truth.raw, truth.sim3):
+        series = () if errors is None else (errors.rotation_deg, errors.translation_m, errors.position_m)
+        values += [float(each.values[k]) for each in series] or [math.nan] * 3
+    return [*values, math.nan if nees is None else float(nees.values[k])]

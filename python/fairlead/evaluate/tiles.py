@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from fairlead.evaluate.catalogue import METRICS
 from fairlead.evaluate.evaluation import Evaluation
 from fairlead.evaluate.metric import Mark, Metric
-from fairlead.evaluate.tables import number
+from fairlead.evaluate.units import LengthUnit, length_unit, number
 
 N_TILES = 6
 _FIRST = (
     *("rotation_deg", "translation_percent", "landmarks_m", "pose_nees", "coverage_percent", "update_p99_ms"),
-    *("reprojection_px", "noise_factor", "outlier_percent", "prior_factor", "update_p50_ms"),
+    *("reprojection_px", "noise_factor", "outlier_percent", "landmark_shift_m", "prior_factor", "update_p50_ms"),
 )
 """Metrics by how much a reader wants them; the first six that the run has are shown."""
-_WITHOUT_LANDMARKS = "landmarks_before_m"
+_GIVEN = "landmarks_before_m"
 _PREFERRED = ("map", "refine", "window", "epnp")
 
 
@@ -44,22 +44,27 @@ def main_method(evaluations: Mapping[str, Evaluation]) -> str:
 def tiles(evaluations: Mapping[str, Evaluation]) -> tuple[Tile, ...]:
     """At most N_TILES tiles."""
     by_key = {metric.key: metric for metric in METRICS}
-    built = (_tile(by_key[key], evaluations, by_key[_WITHOUT_LANDMARKS]) for key in _FIRST)
+    unit = length_unit(evaluations.values())
+    built = (_tile(by_key[key], evaluations, by_key[_GIVEN], unit) for key in _FIRST)
     return tuple(tile for tile in built if tile is not None)[:N_TILES]
 
 
-def _tile(metric: Metric, evaluations: Mapping[str, Evaluation], given: Metric) -> Tile | None:
+def _tile(metric: Metric, evaluations: Mapping[str, Evaluation], given: Metric, unit: LengthUnit) -> Tile | None:
     main = main_method(evaluations)
     reading = metric.read(evaluations[main])
     if reading is None:
         return None
     others = [(name, metric.read(each)) for name, each in evaluations.items() if name != main]
     before = given.read(evaluations[main]) if metric.key == "landmarks_m" else None
+
+    def text(value: float) -> str:
+        return number(unit.scaled(value, metric.unit))
+
     return Tile(
         label=metric.label.removesuffix(", mean").removesuffix(", raw").removesuffix(" / dof"),
-        text=number(reading.value),
-        unit="1 is right" if metric.better == "one" else metric.unit,
+        text=text(reading.value),
+        unit="1 is right" if metric.better == "one" else unit.renamed(metric.unit),
         mark=reading.mark,
-        before="" if before is None else number(before.value),
-        others=tuple((name, number(other.value)) for name, other in others if other is not None),
+        before="" if before is None else text(before.value),
+        others=tuple((name, text(other.value)) for name, other in others if other is not None),
     )

@@ -4,7 +4,7 @@
 
 from fairlead.evaluate.figures.consistency import consistency
 from fairlead.evaluate.figures.errors import errors_over_time, reprojection_over_time
-from fairlead.evaluate.figures.model import landmarks_before_and_after, model_over_time
+from fairlead.evaluate.figures.model import landmark_shifts, landmarks_before_and_after, model_over_time
 from fairlead.evaluate.figures.residuals import residuals
 from fairlead.evaluate.figures.style import COLOURS
 from fairlead.evaluate.figures.trajectory import trajectory
@@ -13,6 +13,7 @@ __all__ = [
     "COLOURS",
     "consistency",
     "errors_over_time",
+    "landmark_shifts",
     "landmarks_before_and_after",
     "model_over_time",
     "reprojection_over_time",

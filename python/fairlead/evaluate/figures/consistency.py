@@ -11,18 +11,12 @@ from fairlead.evaluate.evaluation import Evaluation
 from fairlead.evaluate.figures.curves import binned, draw_curve, is_long
 from fairlead.evaluate.figures.style import MUTED, colour_of, new_figure, plain_decades, styled
 from fairlead.evaluate.summary import Series, quantile
+from fairlead.evaluate.units import length_unit
 
 _BINS = 80
 """Parts of a long run in a narrow panel."""
 
-_COMPONENTS = (
-    ("along x [m]", 1.0),
-    ("along y [m]", 1.0),
-    ("along z [m]", 1.0),
-    ("about x [deg]", float(np.degrees(1.0))),
-    ("about y [deg]", float(np.degrees(1.0))),
-    ("about z [deg]", float(np.degrees(1.0))),
-)
+_AXES = ("x", "y", "z")
 
 
 @styled
@@ -37,7 +31,12 @@ def consistency(evaluation: Evaluation, name: str) -> Figure | None:
     grid = figure.add_gridspec(3, 3, height_ratios=[1.0, 1.0, 0.9])
     colour = colour_of(name, [name])
     first: Axes | None = None
-    for k, (label, factor) in enumerate(_COMPONENTS):
+    unit = length_unit([evaluation])
+    components = [
+        *((f"along {axis} [{unit.name}]", unit.per_metre) for axis in _AXES),
+        *((f"about {axis} [deg]", float(np.degrees(1.0))) for axis in _AXES),
+    ]
+    for k, (label, factor) in enumerate(components):
         axes = figure.add_subplot(grid[k // 3, k % 3], sharex=first)
         first = first or axes
         _component(axes, seconds, factor * found.xi[:, k], factor * found.sigma[:, k], colour)
