@@ -16,6 +16,8 @@ function(fairlead_library name)
     target_include_directories(
         ${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
     target_link_libraries(${target} PUBLIC Eigen3::Eigen ${arg_LINKS})
+    # Eigen packs operands on the stack up to this size, so that models of up to 110 landmarks never touch the heap.
+    target_compile_definitions(${target} PRIVATE EIGEN_STACK_ALLOCATION_LIMIT=1048576)
     fairlead_warnings(${target})
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
     set_property(GLOBAL APPEND PROPERTY FAIRLEAD_TARGETS ${target})

@@ -198,7 +198,7 @@ Estimate Batch::estimate(const Candidate& candidate) {
     MatX Yt(Sigma_.rows(), window::ViewState::kDim);
     MatX SigmaYt = Yt;
     e.status = Status::tracking;
-    e.reason = problem_.noise_factor > 25.0 ? Reason::alarm : Reason::none;
+    e.reason = std::max(problem_.noise_factor, problem_.prior_factor) > kAlarmFactor ? Reason::alarm : Reason::none;
     e.T_camera_target = view.state.T_camera_target;
     e.covariance = window::state_covariance(view, problem_.X, Sigma_, problem_.noise_factor, Yt, SigmaYt);
     double squares = 0.0;

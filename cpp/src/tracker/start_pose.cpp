@@ -7,11 +7,13 @@
 #include <cmath>
 
 #include "fairlead/pnp/ransac.hpp"
+#include "fairlead/tracker/evidence.hpp"
 
 namespace fairlead {
 namespace {
 
 constexpr double kPredictionShare = 0.7;      // inliers that make a prediction good enough
+constexpr double kMaxChance = 0.1;            // consensus sets that chance may be expected to offer
 constexpr double kMaxRotationSigma = 1.0;     // [rad] a pose less certain than this is no pose
 constexpr double kMaxRangeSigma = 0.5;        // [-] of the range
 
@@ -99,6 +101,8 @@ StartPose find_start(const Camera& camera, const UncertainModel& model, std::spa
     }
     const pnp::RefineResult& best = start.poses.best;
     if (!best.ok || best.inliers < std::max(4.0, options.min_inlier_ratio * n)) start.reason = Reason::no_consensus;
+    else if (!start.from_prediction && chance_consensus(camera, scratch, best.inliers, options.loss_threshold) > kMaxChance)
+        start.reason = Reason::no_consensus;
     else if (!well_determined(best)) start.reason = Reason::degenerate;
     return start;
 }

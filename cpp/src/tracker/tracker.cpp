@@ -18,7 +18,6 @@ namespace {
 
 constexpr int kClockConfirmations = 10;  // views with earlier stamps, in order, that are a new clock rather than stray ones
 constexpr double kSameStep = 0.35;       // [rad] turn within which two views agree about a jump
-constexpr double kAlarmFactor = 25.0;    // noise five times what was told
 constexpr double kDecisiveShare = 0.75;  // inliers that make a jump evident at once
 
 double turn(const SE3& a, const SE3& b) { return so3::log(a.R.transpose() * b.R).norm(); }
@@ -169,7 +168,7 @@ Estimate Tracker::State::fused(Estimate estimate, const SE3& T_start, bool conti
     }
     status = estimate.status = Status::tracking;
     estimate.resets = resets;
-    if (structure.noise_factor() > kAlarmFactor) estimate.reason = Reason::alarm;
+    if (std::max(structure.noise_factor(), structure.prior_factor()) > kAlarmFactor) estimate.reason = Reason::alarm;
     describe_residuals(estimate);
     return estimate;
 }

@@ -83,15 +83,19 @@ void CompressedViews::linearise(std::span<const Vec3> X) noexcept {
     shape(X, S);
     gauge_basis(y_, radius_, N_);
     // Oblique projector P = I - N U, U = (N_ref^T N)^-1 N_ref^T: shape changes stay on the slice.
-    const Mat77 inverse = (N_ref_.transpose() * N_).eval().partialPivLu().inverse();
+    Mat77 gram;
+    gram.noalias() = N_ref_.transpose() * N_;
+    const Mat77 inverse = gram.partialPivLu().inverse();
     U_t_.noalias() = N_ref_ * inverse.transpose();
-    LambdaN_.noalias() = Lambda_ * N_;
-    const Mat77 NLN = N_.transpose() * LambdaN_;
+    for (Eigen::Index c = 0; c < 7; ++c) LambdaN_.col(c).noalias() = Lambda_ * N_.col(c);
+    Mat77 half_NLN;
+    half_NLN.noalias() = N_.transpose() * LambdaN_;
+    half_NLN *= 0.5;
     q_.noalias() = Lambda_ * u_;
     q_ -= eta_;
     const Eigen::Matrix<double, 7, 1> Nq = N_.transpose() * q_;
     q_.noalias() -= U_t_ * Nq;
-    LambdaN_.noalias() -= 0.5 * U_t_ * NLN;
+    LambdaN_.noalias() -= U_t_ * half_NLN;
     A_ = Lambda_;
     for (Eigen::Index c = 0; c < 7; ++c) {
         A_.noalias() -= U_t_.col(c) * LambdaN_.col(c).transpose();

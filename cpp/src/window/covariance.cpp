@@ -39,7 +39,7 @@ StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_targ
         const int j = view.measurements[i].landmark;
         Yt.block<3, ViewState::kDim>(3 * j, 0) = reduced_rows(view, view.terms[i], X_target[static_cast<std::size_t>(j)]);
     }
-    SigmaYt.noalias() = Sigma * Yt;
+    for (Eigen::Index c = 0; c < ViewState::kDim; ++c) SigmaYt.col(c).noalias() = Sigma * Yt.col(c);
     StateMatrix inner = Yt.transpose() * SigmaYt;
     inner.diagonal().array() += noise_factor;
     const StateMatrix covariance = view.L_inverse.transpose() * inner * view.L_inverse;

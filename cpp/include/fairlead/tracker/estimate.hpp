@@ -25,6 +25,9 @@ enum class Reason {
     alarm          ///< residuals are far larger than the told noise and model error allow
 };
 
+/// Noise or model error five times what was told: reason alarm.
+inline constexpr double kAlarmFactor = 25.0;
+
 [[nodiscard]] const char* to_string(Status status) noexcept;
 [[nodiscard]] const char* to_string(Reason reason) noexcept;
 

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#include <boost/test/unit_test.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "fairlead/tracker.hpp"
+#include "window/scene.hpp"
+
+using namespace fairlead;
+using namespace fairlead::testing;
+
+namespace {
+
+bool counting = false;
+int allocations = 0;
+
+void* take(std::size_t size) {
+    if (counting) ++allocations;
+    if (void* p = std::malloc(size)) return p;
+    throw std::bad_alloc();
+}
+
+/// Allocations of operator new and of Eigen during updates after construction.
+int allocations_of_flight(int landmarks, int views, int max_views) {
+    const Scene scene = make_scene(landmarks, views, 1.5, 1.0, 1.0, 51);
+    TrackerOptions options;
+    options.max_views = max_views;
+    Tracker tracker(scene.camera, scene.X_told, independent_prior(scene, 1.0), options);
+    allocations = 0;
+    for (std::size_t k = 0; k < scene.views.size(); ++k) {
+        counting = true;
+        Eigen::internal::set_is_malloc_allowed(false);
+        const std::span<const Observation> view(scene.views[k]);
+        (void)tracker.update(40'000'000 * static_cast<std::int64_t>(k + 1), k == 40 ? view.first(0) : view);
+        Eigen::internal::set_is_malloc_allowed(true);
+        counting = false;
+    }
+    return allocations;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return take(size); }
+void* operator new[](std::size_t size) { return take(size); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+
+BOOST_AUTO_TEST_CASE(update_allocates_nothing) {
+    BOOST_TEST(allocations_of_flight(20, 90, 16) == 0);
+    BOOST_TEST(allocations_of_flight(100, 24, 8) == 0);
+}
