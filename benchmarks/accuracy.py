@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The deterministic part of the grid that gates every change: few cells, fixed seeds, a minute at most."""
+"""The deterministic part of the grid that gates every change: few cells, fixed seeds, well below a minute."""
 
 import numpy as np
 
@@ -11,14 +11,13 @@ from benchmarks.verdicts import ERRORS, failures, normalised_nees, per_run
 WORKLOADS: tuple[tuple[str, Cell], ...] = (
     ("clean", Cell(sigma_px=0.25, angle_deg=5.0, model_sigma_m=1.0)),
     ("clean", Cell(sigma_px=1.0, angle_deg=5.0, model_sigma_m=3.0)),
-    ("clean", Cell(sigma_px=1.0, angle_deg=30.0, model_sigma_m=0.1)),
     ("clean", Cell(sigma_px=1.0, angle_deg=90.0, model_sigma_m=1.0)),
     ("clean", Cell(sigma_px=4.0, angle_deg=180.0, model_sigma_m=1.0)),
     ("clean", Cell(sigma_px=8.0, angle_deg=60.0, model_sigma_m=0.5)),
     ("outliers-10", Cell(sigma_px=1.0, angle_deg=90.0, model_sigma_m=1.0)),
     ("outliers-30", Cell(sigma_px=1.0, angle_deg=90.0, model_sigma_m=1.0)),
 )
-RUNS = 30
+RUNS = 20
 UNITS = {"rotation_deg": "deg", "translation_m": "m", "landmark_m": "m"}
 TOLERANCE = 0.02
 """Same seeds give the same digits on one machine; another compiler moves single flights by less than this."""
