@@ -3,7 +3,7 @@
 """EPnP frame by frame on the model as it was given: what most people do, docs/baselines.md section 2."""
 
 from fairlead.baselines.observed import no_pose, observed, plain
-from fairlead.baselines.single_view import solve_view
+from fairlead.baselines.single_view import solve_view, tracked
 from fairlead.tracker import LandmarkIndex
 from fairlead.types import Camera, Estimate, Target, View
 
@@ -31,19 +31,7 @@ class EpnpTracker:
         found = solve_view(seen, self._target.positions, self._camera, refined=False)
         if isinstance(found, str):
             return no_pose(view, "lost", found)
-        return Estimate(
-            frame=view.frame,
-            stamp_ns=view.stamp_ns,
-            status="tracking",
-            reason="",
-            T_camera_target=found.T_camera_target,
-            covariance=found.covariance,
-            n_inliers=len(seen.index),
-            reprojection_rms_px=found.reprojection_rms_px,
-            information_gained=0.0,
-            reset_counter=0,
-            inliers=tuple(self._target.landmarks[j] for j in seen.index),
-        )
+        return tracked(view, seen, found, self._target.landmarks)
 
     @property
     def model(self) -> Target:

@@ -13,8 +13,7 @@ import numpy as np
 
 from fairlead import _core
 from fairlead.baselines.observed import Observed, no_pose, observed, plain
-from fairlead.baselines.single_view import SingleView, pose_covariance, solve_view
-from fairlead.geometry import project, transform
+from fairlead.baselines.single_view import SingleView, solve_view, tracked
 from fairlead.tracker import LandmarkIndex, core_camera
 from fairlead.types import Camera, Estimate, Matrix4, Points3, Poses, Target, View
 
@@ -25,13 +24,13 @@ class FreeWindowOptions:
 
     window_size: int = 10
     """Keyframes in the window [views]. More see more angle, and the first pose comes later."""
-    min_turn_deg: float = 3.0
+    min_turn_deg: float = 1.0
     """Turn of the viewing direction that makes a keyframe [deg]. Too small: no parallax; too large: a late start."""
     min_range_ratio: float = 1.1
     """Change of range, either way, that makes a keyframe [-]."""
     iterations: int = 2
     """Levenberg-Marquardt steps of a solve. More fit the noise: nothing but the early stop regularises."""
-    initial_damping: float = 0.1
+    initial_damping: float = 1.0
     """Of the first step, relative to the Hessian's diagonal [-]. Too small: the free directions run away."""
 
     def __post_init__(self) -> None:
@@ -46,7 +45,7 @@ class FreeBatch:
     """What `free_batch` found."""
 
     estimates: tuple[Estimate, ...]
-    """One per view, in order; lost where EPnP found no pose."""
+    """One per view, in order; lost where PnP found no pose."""
     model: Target
     """The target with the landmarks that the solve ended at; its covariance is that of the target told."""
 
@@ -54,9 +53,9 @@ class FreeBatch:
 def free_batch(
     views: Iterable[View], target: Target, camera: Camera, options: FreeWindowOptions | None = None
 ) -> FreeBatch:
-    """EPnP per view, then landmarks and all poses together: minimise sum r^T S^-1 r, docs/baselines.md eq. (2).
+    """PnP per view, landmarks and all poses together by minimising sum r^T S^-1 r, PnP per view on the result.
 
-    No prior; the gauge is held by the damping alone, so that steps change as little as they can.
+    docs/baselines.md eq. (2). No prior; the damping alone holds the gauge, so that steps change as little as they can.
     Raises ValueError for fewer than four landmarks in the target, or an unknown landmark in a view.
     """
     options = options or FreeWindowOptions()
@@ -64,22 +63,19 @@ def free_batch(
     camera = plain(camera)
     index = LandmarkIndex(target.landmarks)
     seen = [observed(view, index) for view in views]
-    first = [solve_view(one, target.positions, camera, refined=False) for one in seen]
+    first = [solve_view(one, target.positions, camera, refined=True) for one in seen]
     kept = [k for k, pose in enumerate(first) if isinstance(pose, SingleView)]
     T = np.array([pose.T_camera_target for pose in first if isinstance(pose, SingleView)]).reshape(-1, 4, 4)
-    X, refined = _solve([seen[k] for k in kept], target.positions, T, camera, options)
-    poses = dict(zip(kept, refined, strict=True))
-    estimates = [
-        _estimate(view, seen[k], X, poses[k], camera, target.landmarks)
-        if k in poses
-        else no_pose(view, "lost", str(first[k]))
-        for k, view in enumerate(views)
-    ]
+    X, _ = _solve([seen[k] for k in kept], target.positions, T, camera, options)
+    last = [solve_view(one, X, camera, refined=True) for one in seen]
+    estimates = [_estimate(view, s, pose, target.landmarks) for view, s, pose in zip(views, seen, last, strict=True)]
     return FreeBatch(estimates=tuple(estimates), model=replace(target, positions=X))
 
 
 class WindowTracker:
-    """The published method: EPnP on the current model, a full window of keyframes refined together, PnP on the result.
+    """The published method: PnP on the current model, a full window of keyframes refined together, PnP on the result.
+
+    PnP is EPnP with its reprojection error minimised from there.
 
     Status acquiring until the window is full for the first time; then tracking, or lost with a reason. The refined
     model is carried on as a point, in a frame that drifts: nothing holds the gauge. The covariance is that of the told
@@ -103,17 +99,15 @@ class WindowTracker:
     def update(self, view: View) -> Estimate:
         """Take in one view; bad data end in the status. ValueError for an unknown landmark only."""
         seen = observed(view, self._index)
-        first = solve_view(seen, self._positions, self._camera, refined=False)
+        first = solve_view(seen, self._positions, self._camera, refined=True)
         if isinstance(first, str):
             return no_pose(view, "lost" if self._was_full else "acquiring", first)
         if self._is_keyframe(first.T_camera_target):
             self._push(seen, first.T_camera_target)
+            first = solve_view(seen, self._positions, self._camera, refined=True)
         if not self._was_full:
             return no_pose(view, "acquiring", "window_not_full")
-        pose = solve_view(seen, self._positions, self._camera, refined=True)
-        if isinstance(pose, str):
-            return no_pose(view, "lost", pose)
-        return _estimate(view, seen, self._positions, pose.T_camera_target, self._camera, self._target.landmarks)
+        return _estimate(view, seen, first, self._target.landmarks)
 
     @property
     def model(self) -> Target:
@@ -172,24 +166,7 @@ def _solve(
     return refined, np.array(poses)
 
 
-def _estimate(
-    view: View, seen: Observed, X_target: Points3, T: Matrix4, camera: Camera, landmarks: tuple[str, ...]
-) -> Estimate:
-    X = X_target[seen.index]
-    residuals = project(camera, transform(T, X)) - seen.pixels
-    covariance = pose_covariance(camera, X, T, seen.covariances)
-    if covariance is None or not np.isfinite(residuals).all():
-        return no_pose(view, "lost", "degenerate")
-    return Estimate(
-        frame=view.frame,
-        stamp_ns=view.stamp_ns,
-        status="tracking",
-        reason="",
-        T_camera_target=T,
-        covariance=covariance,
-        n_inliers=len(seen.index),
-        reprojection_rms_px=float(np.sqrt((residuals**2).mean())),
-        information_gained=0.0,
-        reset_counter=0,
-        inliers=tuple(landmarks[j] for j in seen.index),
-    )
+def _estimate(view: View, seen: Observed, pose: SingleView | str, landmarks: tuple[str, ...]) -> Estimate:
+    if isinstance(pose, str):
+        return no_pose(view, "lost", pose)
+    return tracked(view, seen, pose, landmarks)

@@ -10,7 +10,7 @@ import numpy as np
 from fairlead import opencv
 from fairlead.baselines.observed import Observed
 from fairlead.geometry import exp_se3, project, transform
-from fairlead.types import Camera, Matrix4, Matrix6, PixelCovariances, Points3
+from fairlead.types import Camera, Estimate, Matrix4, Matrix6, PixelCovariances, Points3, View
 
 NEARLY_FLAT = 0.1
 """Thickness over breadth of the landmarks below which the solvers for planes are asked too [-]."""
@@ -92,3 +92,20 @@ def pose_covariance(
     if not values[0] > 1e-12 * values[-1]:
         return None
     return scale[:, None] * ((vectors / values) @ vectors.T) * scale
+
+
+def tracked(view: View, seen: Observed, pose: SingleView, landmarks: tuple[str, ...]) -> Estimate:
+    """The estimate with status tracking of a checked pose."""
+    return Estimate(
+        frame=view.frame,
+        stamp_ns=view.stamp_ns,
+        status="tracking",
+        reason="",
+        T_camera_target=pose.T_camera_target,
+        covariance=pose.covariance,
+        n_inliers=len(seen.index),
+        reprojection_rms_px=pose.reprojection_rms_px,
+        information_gained=0.0,
+        reset_counter=0,
+        inliers=tuple(landmarks[j] for j in seen.index),
+    )

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What every detector is, and which one a specification names, docs/fiducials.md section 1."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from fairlead.detect.fiducial import BoardDetector, CharucoBoard, Chessboard, TagDetector
 from fairlead.opencv import Image
@@ -11,6 +11,7 @@ from fairlead.types import Target, View
 FORMS = "aruco:DICT_4X4_100, apriltag:36h11, charuco:7x5:DICT_5X5_100[:0.75], chessboard:9x6"
 
 
+@runtime_checkable
 class Detector(Protocol):
     """Finds the landmarks of a target in an image."""
 

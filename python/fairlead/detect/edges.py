@@ -112,7 +112,7 @@ def _without_spread(
     for tag in np.flatnonzero(np.isfinite(lines.offset).all(axis=1)):
         inner = cell_edges(patterns[tag])
         for _ in range(SPREAD_STEPS):
-            moved = _intersect(quads[tag : tag + 1], lines, inward[tag : tag + 1])[0]
+            moved = _intersect(quads, lines, inward)[tag]
             if not np.isfinite(moved).all():
                 break
             H = homography(moved)
@@ -172,7 +172,7 @@ def _find_edges(values: np.ndarray, quads: Quads, half_widths: Sides) -> _Edges:
         clear = contrast >= np.maximum(MIN_CONTRAST, 0.4 * _median(contrast)[:, :, None])
     offset[~clear] = np.nan
     blur, tone = _shape(smoothed, s, dark, bright)
-    level = _median(0.5 * (dark + bright).reshape(len(quads), -1))
+    level = _median(0.5 * (dark + bright).reshape(len(quads), 4 * STATIONS))
     return _Edges(along=t, offset=offset, blur=blur, level=level, tone=tone)
 
 

@@ -4,7 +4,6 @@
 
 import re
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -36,7 +35,7 @@ class TagDetector:
         grey = opencv.grey(image)
         found = opencv.marker_corners(grey, self._family)
         ids, counts = np.unique(found.ids, return_counts=True)
-        once = np.isin(found.ids, ids[counts == 1]) & np.array([self._is_wanted(i) for i in found.ids], dtype=bool)
+        once = np.isin(found.ids, ids[counts == 1]) & np.array([self._is_wanted(int(i)) for i in found.ids], dtype=bool)
         patterns = np.array([self._pattern(int(i)) for i in found.ids[once]], dtype=bool)
         patterns = patterns.reshape(-1, self._cells, self._cells)
         measured = measure_tags(grey, found.corners[once], patterns)
@@ -55,14 +54,6 @@ class TagDetector:
 
     def _pattern(self, identity: int) -> np.ndarray:
         return opencv.marker_image(self._family, identity, 1) > 0
-
-
-class Board(Protocol):
-    """A board whose inner corners OpenCV can find."""
-
-    def find(self, grey: opencv.GreyImage) -> opencv.FoundCorners:
-        """Corners to about a pixel."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -109,7 +100,7 @@ class BoardDetector:
     Raises ValueError for a target without such landmarks.
     """
 
-    def __init__(self, board: Board, target: Target | None = None) -> None:
+    def __init__(self, board: CharucoBoard | Chessboard, target: Target | None = None) -> None:
         self._board = board
         self._wanted = _wanted(target, _BOARD_LANDMARK, "corner<number>")
 

@@ -20,8 +20,8 @@ MIN_CONTRAST = 4.0
 """Half the difference between black and white [grey levels]."""
 MIN_SINE = 0.2
 """Of the angle between the two edges."""
-MAX_STEP_PX = 2.0
-"""A corner farther from its first guess was another."""
+MAX_STEP_SHARE = 0.2
+"""Farther from its first guess, as a share of the distance to the next, a corner is not believed."""
 _PARAMETERS = 11
 _FLOOR_PX = 0.005
 
@@ -69,35 +69,39 @@ def measure_saddles(image: GreyImage, guesses: Pixels) -> Saddles:
     reach = MAX_RADIUS_PX + 1
     if n == 0 or min(height, width) <= 2 * reach:
         return nothing
-    radius = _radii(guesses)
+    spacing = _spacing(guesses)
+    radius = np.minimum(SQUARE_SHARE * spacing, MAX_RADIUS_PX)
     patches = _cut(image, guesses, radius, reach)
-    p = _start(patches, guesses)
-    p, residuals, J = _fit(patches, p)
+    p = _fit(patches, _start(patches, guesses))[0]
+    near = np.hypot(*(p[:, :2] - guesses).T) < MAX_STEP_SHARE * spacing
+    centres = np.where(near[:, None], p[:, :2], guesses)  # once more: OpenCV's guess may be half a disc off
+    patches = _cut(image, centres, radius, reach)
+    p, residuals, J = _fit(patches, np.where(near[:, None], p, _start(patches, guesses)))
     covariances = _covariances(residuals, J, patches)
-    shift = np.hypot(*(p[:, :2] - guesses).T)
     measured = (
-        np.isfinite(p).all(axis=1)
+        near
+        & (np.hypot(*(p[:, :2] - centres).T) < 1.0)
         & np.isfinite(covariances).all(axis=(1, 2))
-        & (shift < MAX_STEP_PX)
         & (np.abs(p[:, 6]) > MIN_CONTRAST)
         & (np.abs(np.sin(p[:, 2] - p[:, 3])) > MIN_SINE)
         & (np.exp(p[:, 4]) < 0.7 * radius)
-        & (guesses >= reach).all(axis=1)
-        & (guesses[:, 0] < width - reach)
-        & (guesses[:, 1] < height - reach)
+        & (centres >= reach).all(axis=1)
+        & (centres[:, 0] < width - reach)
+        & (centres[:, 1] < height - reach)
         & (radius >= MIN_RADIUS_PX)
     )
-    corners = np.where(measured[:, None], p[:, :2], np.nan)
     return Saddles(
-        corners=corners, covariances=np.where(measured[:, None, None], covariances, np.nan), measured=measured
+        corners=np.where(measured[:, None], p[:, :2], np.nan),
+        covariances=np.where(measured[:, None, None], covariances, np.nan),
+        measured=measured,
     )
 
 
-def _radii(guesses: Pixels) -> np.ndarray:
-    """Radius of the fit about each corner [px]."""
+def _spacing(guesses: Pixels) -> np.ndarray:
+    """Distance from each corner to the next one [px]; that of a lone corner is MAX_RADIUS_PX / SQUARE_SHARE."""
     apart = np.hypot(*(guesses[:, None] - guesses[None]).transpose(2, 0, 1))
     np.fill_diagonal(apart, np.inf)
-    return np.minimum(SQUARE_SHARE * apart.min(axis=1), MAX_RADIUS_PX)
+    return np.minimum(apart.min(axis=1), 1e6) if len(guesses) > 1 else np.full(1, MAX_RADIUS_PX / SQUARE_SHARE)
 
 
 def _cut(image: GreyImage, guesses: Pixels, radius: np.ndarray, reach: int) -> _Patches:

@@ -44,8 +44,11 @@ def charuco_corners(image: GreyImage, columns: int, rows: int, family: Dictionar
     """
     import cv2
 
+    dictionary = _dictionary(family)
+    if columns * rows // 2 > len(dictionary.bytesList):
+        raise ValueError(f"charuco: expected at most {len(dictionary.bytesList)} tags, got {columns}x{rows} squares")
     try:
-        board = cv2.aruco.CharucoBoard((columns, rows), 1.0, marker_ratio, _dictionary(family))
+        board = cv2.aruco.CharucoBoard((columns, rows), 1.0, marker_ratio, dictionary)
         detector = cv2.aruco.CharucoDetector(board)
     except cv2.error as error:
         raise ValueError(f"charuco: expected a possible board, got {columns}x{rows} {family} {marker_ratio}") from error
