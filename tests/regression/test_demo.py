@@ -51,6 +51,9 @@ def test_side_of_tags_and_its_sigma_by_hand() -> None:
     side = tag_side(Target(name="t", landmarks=names, positions=corners, covariance=covariance))
     assert np.isclose(side.mean_mm, 10.0)
     assert np.isclose(side.sigma_mm, 0.25)
+    covariance[0, 0] = covariance[0, 3] = covariance[3, 0] = 1e-6  # tl moves along with tr: no side changes
+    side = tag_side(Target(name="t", landmarks=names, positions=corners, covariance=covariance))
+    assert side.sigma_mm < 1e-9
 
 
 def test_the_drawing_comes_with_the_program() -> None:
