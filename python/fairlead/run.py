@@ -5,12 +5,11 @@
 import itertools
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
-from fairlead.detect import Detector, detector_from_spec
 from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
 from fairlead.io.options import load_options
@@ -21,7 +20,7 @@ from fairlead.io.timing import Timing
 from fairlead.progress import ProgressFactory, silent
 from fairlead.sinks.run_folder import WRITTEN, RunFolder
 from fairlead.sources.image_folder import ImageFolderSource
-from fairlead.sources.source import ImageSource, ViewSource
+from fairlead.sources.source import ImageFrame, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
 from fairlead.tracker import Refinement, Tracker, TrackerOptions
@@ -131,13 +130,12 @@ def evaluate(config: EvaluateConfig) -> Path:
 class DetectedViews:
     """The views that a detector finds in a sequence of images."""
 
-    def __init__(self, images: ImageSource, detector: Detector) -> None:
+    def __init__(self, images: ImageSource, detect: Callable[[ImageFrame], View]) -> None:
         self._images = images
-        self._detector = detector
+        self._detect = detect
 
     def __iter__(self) -> Iterator[View]:
-        for frame in self._images:
-            yield self._detector.detect(frame.image, frame=frame.frame, stamp_ns=frame.stamp_ns)
+        return map(self._detect, self._images)
 
     def count(self) -> int:
         """Number of images."""
@@ -160,11 +158,14 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
         raise InputError(path, "expected observations (.csv, .parquet) or a folder of images")
     if config.detector is None:
         raise UsageError(f"{path} is a folder of images: expected --detector too")
+    from fairlead.detect import detector_from_spec
+
     try:
         detector = detector_from_spec(config.detector, target)
     except ValueError as error:
         raise UsageError(f"--detector: {str(error).removeprefix('detector: ')}") from error
-    return DetectedViews(ImageFolderSource(path, camera, fps=config.fps), detector)
+    images = ImageFolderSource(path, camera, fps=config.fps)
+    return DetectedViews(images, lambda each: detector.detect(each.image, each.frame, each.stamp_ns))
 
 
 def make_estimator(config: TrackConfig, options: TrackerOptions, target: Target, camera: Camera) -> PoseEstimator:
