@@ -196,7 +196,7 @@ def test_table_marks_bands_and_the_best_method() -> None:
     nees = rows["pose_nees"].cells[1]
     assert nees is not None
     assert nees.mark == "good"
-    assert nees.detail.startswith("99.9 % band 0.")
+    assert nees.details[0].startswith("99.9 % band 0.")
     assert rows["pose_inside_95_percent"].cells[0] is not None
 
 

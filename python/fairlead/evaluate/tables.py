@@ -22,7 +22,8 @@ class Cell:
     """One number of one method, as it is printed."""
 
     text: str
-    detail: str
+    details: tuple[str, ...]
+    """Small print, piece by piece."""
     mark: Mark | None
     best: bool
     """The best of several methods."""
@@ -69,8 +70,8 @@ def _row(metric: Metric, evaluations: Sequence[Evaluation], unit: LengthUnit) ->
 
 def _cell(metric: Metric, reading: Reading, unit: LengthUnit, *, best: bool) -> Cell:
     spread = [f"{name} {number(unit.scaled(value, metric.unit))}" for name, value in reading.spread]
-    detail = " · ".join([*spread, *([reading.note] if reading.note else [])])
-    return Cell(text=number(unit.scaled(reading.value, metric.unit)), detail=detail, mark=reading.mark, best=best)
+    details = (*spread, *filter(None, reading.note.split("; ")))
+    return Cell(text=number(unit.scaled(reading.value, metric.unit)), details=details, mark=reading.mark, best=best)
 
 
 def _best(better: Better, readings: Sequence[Reading | None]) -> float | None:

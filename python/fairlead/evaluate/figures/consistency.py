@@ -71,7 +71,7 @@ def _nees_panel(axes: Axes, seconds: Series, nees: Nees, colour: str) -> None:
     axes.axhline(1.0, color=MUTED, linewidth=0.6)
     draw_curve(axes, seconds, nees.values, colour, share=1.0)
     axes.set_yscale("log")
-    plain_decades(axes)
+    plain_decades(axes.yaxis)
     present = nees.values[np.isfinite(nees.values) & (nees.values > 0.0)]
     low, high = chi_square_band(dof, 0.999).lower, chi_square_band(dof, 0.999).upper
     axes.set_ylim(

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from fairlead.evaluate.alignment import Alignment
 from fairlead.evaluate.evaluation import Evaluation
-from fairlead.evaluate.figures.style import GRID, MUTED, colour_of, legend_above, new_figure, styled
+from fairlead.evaluate.figures.style import GRID, MUTED, colour_of, legend_above, log_if_wide, new_figure, styled
 from fairlead.evaluate.landmarks import LandmarkErrors, coordinate_sigmas
 from fairlead.evaluate.summary import Series
 from fairlead.evaluate.units import length_unit
@@ -26,6 +26,13 @@ _ALIGNED: dict[Alignment, str] = {
     "raw": "as it is",
     "se3": "after rigid alignment",
     "sim3": "after similarity alignment",
+}
+
+
+_KINDS: dict[str, dict[str, Any]] = {
+    "raw": {},
+    "promised": {"linewidth": 0.9, "linestyle": (0, (4, 3))},
+    "without gauge and scale": {"alpha": 0.45},
 }
 
 
@@ -84,7 +91,8 @@ def _dots(
         axes.scatter(values, rows, s=18, color=colour_of(name, methods), label=name, zorder=3)
     axes.set_yticks(rows, order, fontsize=8.0)
     axes.set_ylim(-0.7, len(order) - 0.3)
-    axes.set_xlim(left=0.0)
+    lengths = [rings, *([end.get(landmark, np.nan) for landmark in order] for end in ends.values())]
+    log_if_wide(axes, [np.array(each, dtype=np.float64) for each in lengths], "x")
     axes.grid(visible=False, axis="y")
     legend_above(figure, axes)
     return figure, axes
@@ -112,25 +120,27 @@ def _before(evaluation: Evaluation, alignment: Alignment) -> LandmarkErrors | No
 @styled
 def model_over_time(evaluations: Mapping[str, Evaluation]) -> Figure | None:
     """Rms landmark error raw and without gauge, with what the covariance promises. None without a history."""
-    known = {name: each.model_history for name, each in evaluations.items() if each.model_history is not None}
+    known = {
+        name: each.model_history
+        for name, each in evaluations.items()
+        if each.model_history is not None and _is_refined(each)
+    }
     if not known:
         return None
     unit = length_unit(evaluations.values())
-    figure = new_figure(2.6)
+    figure = new_figure(2.8)
     axes = figure.subplots()
+    drawn: list[Series] = []
     for name, history in known.items():
-        end = max(float(evaluations[name].run.seconds[-1]), float(history.seconds[-1]))
-        curves: tuple[tuple[Series, str, dict[str, Any]], ...] = (
-            (history.raw_m, "raw", {}),
-            (history.sigma_m, "promised", {"linewidth": 0.9, "linestyle": (0, (4, 3))}),
-            (history.sim3_m, "without gauge and scale", {"alpha": 0.45}),
-        )
-        for values, label, style in curves:
-            curve = unit.per_metre * np.append(values, values[-1])
-            seconds = np.append(history.seconds, end)
-            colour = colour_of(name, list(evaluations))
-            axes.step(seconds, curve, where="post", color=colour, label=f"{name}: {label}", **style)
-    axes.set_ylim(bottom=0.0)
+        colour = colour_of(name, list(evaluations))
+        seconds = np.append(history.seconds, max(float(evaluations[name].run.seconds[-1]), float(history.seconds[-1])))
+        for values, style in zip((history.raw_m, history.sigma_m, history.sim3_m), _KINDS.values(), strict=True):
+            drawn.append(unit.per_metre * np.append(values, values[-1]))
+            axes.step(seconds, drawn[-1], where="post", color=colour, **style)
+        axes.plot([], [], color=colour, label=name)
+    for label, style in _KINDS.items():
+        axes.plot([], [], color=MUTED, label=label, **style)
+    log_if_wide(axes, drawn)
     axes.set_ylabel(f"landmark error rms [{unit.name}]")
     axes.set_xlabel("time [s]")
     axes.margins(x=0.01)

@@ -41,7 +41,7 @@ def residuals(evaluations: Mapping[str, Evaluation]) -> Figure | None:
     left.set_ylabel("density [-]")
     left.set_ylim(bottom=0.0)
     right.set_yscale("log")
-    plain_decades(right)
+    plain_decades(right.yaxis)
     right.set_ylim(1e-4, 1.3)
     right.set_xlim(0.0, _SQUARE_LIMIT)
     right.set_xlabel("squared normalised residual d² [-]")

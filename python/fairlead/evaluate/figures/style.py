@@ -7,11 +7,12 @@ Figures are matplotlib objects without pyplot, so nothing global is touched; mat
 
 import warnings
 from collections.abc import Callable, Sequence
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, Literal, ParamSpec, TypeVar
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
@@ -106,22 +107,23 @@ def new_figure(height_inches: float) -> Figure:
     return Figure(figsize=(WIDTH_INCHES, height_inches), layout="constrained")
 
 
-def log_if_wide(axes: Axes, series: Sequence[Series]) -> None:
-    """Logarithmic from the smallest to the largest where a linear axis would flatten one of them."""
+def log_if_wide(axes: Axes, series: Sequence[Series], axis: Literal["x", "y"] = "y") -> None:
+    """Logarithmic where a linear axis would flatten one of the series, else from zero."""
     values = np.concatenate([np.ravel(each) for each in series]) if series else np.zeros(0)
     values = values[np.isfinite(values) & (values > 0.0)]
+    set_scale, set_limit = (axes.set_yscale, axes.set_ylim) if axis == "y" else (axes.set_xscale, axes.set_xlim)
     if values.size > 1 and np.quantile(values, 0.99) > 10.0 * np.median(values):
-        axes.set_yscale("log")
-        axes.set_ylim(bottom=float(np.quantile(values, 0.005)) * 0.6)
-        plain_decades(axes)
+        set_scale("log")
+        set_limit(float(np.quantile(values, 0.005)) * 0.6, None)
+        plain_decades(axes.yaxis if axis == "y" else axes.xaxis)
     else:
-        axes.set_ylim(bottom=0.0)
+        set_limit(0.0, None)
 
 
-def plain_decades(axes: Axes) -> None:
+def plain_decades(axis: Axis) -> None:
     """0.01, 0.1, 1, 10 on a logarithmic axis instead of powers of ten."""
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def legend_above(figure: Figure, axes: Axes) -> None:
