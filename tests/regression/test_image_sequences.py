@@ -3,6 +3,8 @@
 """Real photographs through a detector: as long as they last, and what happens when one is broken."""
 
 import shutil
+import struct
+import zlib
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,7 @@ import pytest
 from fairlead.cli import main
 from fairlead.io.observations import read_views
 from fairlead.io.poses import read_poses
+from fairlead.io.shipped import shipped_data
 
 
 def arguments(pen: Path, images: Path, out: Path, *more: str) -> list[str]:
@@ -66,4 +69,24 @@ def test_a_detector_that_does_not_fit_is_one_line_and_2(
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert message in error
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_gigantic_header_and_a_name_that_leaves_the_folder_are_one_line_and_2(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    images = tmp_path / "images"
+    images.mkdir()
+    header = b"IHDR" + struct.pack(">IIBBBBB", 60_000, 60_000, 8, 2, 0, 0, 0)
+    chunk = struct.pack(">I", 13) + header + struct.pack(">I", zlib.crc32(header))
+    end = struct.pack(">I", 0) + b"IEND" + struct.pack(">I", zlib.crc32(b"IEND"))
+    (images / "1689478371.png").write_bytes(b"\x89PNG\r\n\x1a\n" + chunk + end)
+    pen = shipped_data("marker_pen")
+    assert main(arguments(pen, images, tmp_path / "run")) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "60000 x 60000" in error
+    (images / "stamps.csv").write_text("image,stamp_ns\n../../secret.png,1\n")
+    assert main(arguments(pen, images, tmp_path / "run")) == 2
+    assert "not there" in capsys.readouterr().err
     assert not (tmp_path / "run").exists()
