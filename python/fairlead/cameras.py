@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Central cameras in numpy, independent of the C++ core: docs/cameras.md.
+"""Central cameras in numpy, independent of the C++ core: docs/cameras.md eq. (1)-(7), (9).
 
 Sources: OpenCV calib3d manual (plumb_bob, rational); Kannala and Brandt 2006, eq. (6) (equidistant).
 """
