@@ -54,11 +54,23 @@ def main() -> None:
     order = np.argsort(np.linalg.norm(moved, axis=1))
     rows = np.arange(len(order))
     for axis, marker in zip(range(3), "osD", strict=True):
-        right.errorbar(rows + 0.22 * (axis - 1), moved[order, axis], 2 * sigma[order, axis], fmt=marker, ms=3.2, lw=0.9,
-                       color=COLOURS["refine"], alpha=(1.0, 0.7, 0.45)[axis], label=f"{'xyz'[axis]}, 2 sigma")  # fmt: skip
-    right.fill_between(rows, -2 * told.mean(), 2 * told.mean(), color=COLOURS["epnp"], alpha=0.15, lw=0, label="told, 2 sigma")
+        right.errorbar(
+            rows + 0.22 * (axis - 1),
+            moved[order, axis],
+            2 * sigma[order, axis],
+            fmt=marker,
+            ms=3.2,
+            lw=0.9,
+            color=COLOURS["refine"],
+            alpha=(1.0, 0.7, 0.45)[axis],
+            label=f"{'xyz'[axis]}, 2 sigma",
+        )
+    band = 2 * told.mean()
+    right.fill_between(rows, -band, band, color=COLOURS["epnp"], alpha=0.15, lw=0, label="told, 2 sigma")
     right.axhline(0.0, color="0.5", lw=0.8)
-    right.set(xlabel="tag corners, by how far they moved", ylabel="moved from the drawing [mm]", xticks=[], ylim=(-2.4, 2.4))
+    right.set(
+        xlabel="tag corners, by how far they moved", ylabel="moved from the drawing [mm]", xticks=[], ylim=(-2.4, 2.4)
+    )
     right.set_title("what 8 photographs say about the drawing", fontsize=10, loc="left")
     right.legend(frameon=False, ncols=4, fontsize=9, loc="lower left")
     for axes in (left, right):

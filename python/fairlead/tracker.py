@@ -24,9 +24,9 @@ class TrackerOptions:
     max_views: int = _D.max_views
     """Keyframes kept and relinearised [views]. More cost time; too few lose accuracy while the model is still poor."""
     loss_threshold: float = _D.loss_threshold
-    """Squared whitened residual [-] where the robust loss turns. Too small wastes good data, too large believes outliers."""
+    """Squared whitened residual [-] where the robust loss turns. Too small wastes data, too large believes outliers."""
     gate: float = _D.gate
-    """Squared whitened innovation [-] beyond which an observation is an outlier. Too small loses the target when it turns."""
+    """Squared whitened innovation [-] of an outlier. Too small loses a target that turns, too large lets errors in."""
     min_inlier_ratio: float = _D.min_inlier_ratio
     """Share of the observations [-] that a pose must explain. Too small believes chance, too large gives up early."""
     coast_limit_s: float = _D.coast_limit_s
@@ -60,6 +60,7 @@ class LandmarkIndex:
         self._number = {name: i for i, name in enumerate(landmarks)}
 
     def __call__(self, names: Sequence[str]) -> np.ndarray:
+        """Numbers of these landmarks, int32."""
         try:
             return np.array([self._number[name] for name in names], dtype=np.int32)
         except KeyError as error:
@@ -91,8 +92,8 @@ def _estimate(frame: int, core: _CoreEstimate, landmarks: Sequence[str]) -> Esti
 class Tracker:
     """Pose of a roughly known target in every view, and the model getting better as views come in.
 
-    Minimises E = 1/2 |X - X0|^2_(P0^-1) + sum_kj rho(r_kj^T S_kj^-1 r_kj) over landmarks X and poses T_k of a bounded window, docs/estimator.md
-    eq. (1)-(3); views that leave the window are compressed, not dropped (eq. (11)).
+    Minimises E = 1/2 [|X - X0|^2_(P0^-1) + sum_kj rho(r_kj^T S_kj^-1 r_kj)] over landmarks X and poses T_k of a bounded
+    window, docs/estimator.md eq. (1), (3); views that leave the window are compressed, not dropped, eq. (11).
 
     Parameters
     ----------

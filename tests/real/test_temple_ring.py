@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Photographs of a plaster temple with camera poses from a gantry (Seitz et al. 2006); the told model is 3 % of its size off."""
+"""A plaster temple photographed by a gantry (Seitz et al. 2006); the told model is 3 % of its size off."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -33,14 +33,15 @@ class Ring:
         return 1e3 * float(np.sqrt(np.mean(np.sum((moved - self.true.positions) ** 2, axis=1))))
 
     def camera_percent(self, estimates: Sequence[Estimate], model: Target) -> float:
-        """Rms error of the camera's position in the target frame, in percent of the range, after the model's similarity."""
+        """Rms error of the camera's position [% of range] after the similarity that aligns the model."""
         alignment = align_similarity(self.true.positions, model.positions)
         pairs = {truth.stamp_ns: truth.T_camera_target for truth in self.truth}
         errors = []
         for estimate in estimates:
             T, T_true = estimate.T_camera_target, pairs[estimate.stamp_ns]
             centre, centre_true = -T[:3, :3].T @ T[:3, 3], -T_true[:3, :3].T @ T_true[:3, 3]
-            errors.append(np.linalg.norm(alignment.apply(centre[None])[0] - centre_true) / np.linalg.norm(T_true[:3, 3]))
+            error = alignment.apply(centre[None])[0] - centre_true
+            errors.append(np.linalg.norm(error) / np.linalg.norm(T_true[:3, 3]))
         return 100.0 * float(np.sqrt(np.mean(np.square(errors))))
 
 
