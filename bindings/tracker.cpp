@@ -24,11 +24,12 @@ namespace {
 
 nb::tuple as_tuple(const Estimate& e) {
     return nb::make_tuple(e.stamp_ns, to_string(e.status), to_string(e.reason), to_array(matrix(e.T_camera_target)),
-                          to_array(e.covariance), e.inliers, e.dropped, e.reprojection_rms_px, e.information_gained, e.resets,
-                          std::vector<int>(e.inlier_landmarks.begin(), e.inlier_landmarks.end()));
+                          to_array(e.covariance), e.inliers, e.dropped, e.reprojection_rms_px, e.information_gained,
+                          e.resets, std::vector<int>(e.inlier_landmarks.begin(), e.inlier_landmarks.end()));
 }
 
-nb::tuple update(Tracker& tracker, std::int64_t stamp_ns, const Indices& landmarks, const Rows2& pixels, const Rows22& covariances) {
+nb::tuple update(Tracker& tracker, std::int64_t stamp_ns, const Indices& landmarks, const Rows2& pixels,
+                 const Rows22& covariances) {
     const std::vector<Observation> observations = to_observations(landmarks, pixels, covariances);
     Estimate estimate;
     {
@@ -38,8 +39,9 @@ nb::tuple update(Tracker& tracker, std::int64_t stamp_ns, const Indices& landmar
     return as_tuple(estimate);
 }
 
-nb::tuple refine_views(const Camera& camera, const Rows3& X0, const Square& P0, const Indices64& stamps_ns, const Indices& sizes,
-                       const Indices& landmarks, const Rows2& pixels, const Rows22& covariances, const TrackerOptions& options) {
+nb::tuple refine_views(const Camera& camera, const Rows3& X0, const Square& P0, const Indices64& stamps_ns,
+                       const Indices& sizes, const Indices& landmarks, const Rows2& pixels, const Rows22& covariances,
+                       const TrackerOptions& options) {
     const std::vector<Observation> observations = to_observations(landmarks, pixels, covariances);
     if (sizes.size() != stamps_ns.size()) throw std::invalid_argument("sizes: expected one per stamp");
     std::vector<BatchView> views;
@@ -64,8 +66,9 @@ nb::tuple refine_views(const Camera& camera, const Rows3& X0, const Square& P0, 
                           refinement.prior_factor, refinement.cost, refinement.iterations, refinement.converged);
 }
 
-window::Problem make_problem(const Camera& camera, const Rows3& X, const Rows44& T, const Indices& view_index, const Indices& landmarks,
-                             const Rows2& pixels, const Rows22& covariances, double loss_threshold) {
+window::Problem make_problem(const Camera& camera, const Rows3& X, const Rows44& T, const Indices& view_index,
+                             const Indices& landmarks, const Rows2& pixels, const Rows22& covariances,
+                             double loss_threshold) {
     window::Problem problem;
     problem.camera = camera;
     problem.X = to_points(X);
@@ -76,35 +79,39 @@ window::Problem make_problem(const Camera& camera, const Rows3& X, const Rows44&
         problem.views.push_back(std::move(view));
     }
     const std::vector<Observation> observations = to_observations(landmarks, pixels, covariances);
-    if (view_index.size() != observations.size()) throw std::invalid_argument("view_index: expected one per observation");
+    if (view_index.size() != observations.size())
+        throw std::invalid_argument("view_index: expected one per observation");
     for (std::size_t i = 0; i < observations.size(); ++i) {
         const std::int32_t k = view_index.data()[i];
         const Observation& o = observations[i];
-        if (k < 0 || static_cast<std::size_t>(k) >= problem.views.size() || o.landmark < 0 || o.landmark >= problem.landmarks())
+        if (k < 0 || static_cast<std::size_t>(k) >= problem.views.size() || o.landmark < 0 ||
+            o.landmark >= problem.landmarks())
             throw std::invalid_argument("observation " + std::to_string(i) + ": view or landmark index out of range");
         problem.views[static_cast<std::size_t>(k)].measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
     }
     return problem;
 }
 
-nb::tuple solve_window(const Camera& camera, const Rows3& X, const Rows44& T, const Indices& view_index, const Indices& landmarks,
-                       const Rows2& pixels, const Rows22& covariances, const nb::object& prior_mean,
-                       const nb::object& prior_information, double loss_threshold, int max_iterations, double initial_damping,
-                       double tolerance) {
+nb::tuple solve_window(const Camera& camera, const Rows3& X, const Rows44& T, const Indices& view_index,
+                       const Indices& landmarks, const Rows2& pixels, const Rows22& covariances,
+                       const nb::object& prior_mean, const nb::object& prior_information, double loss_threshold,
+                       int max_iterations, double initial_damping, double tolerance) {
     window::Problem problem = make_problem(camera, X, T, view_index, landmarks, pixels, covariances, loss_threshold);
     if (!prior_information.is_none()) {
         const std::vector<Vec3> mean = to_points(nb::cast<Rows3>(prior_mean));
         problem.prior = window::LandmarkPrior{Eigen::Map<const VecX>(mean.front().data(), 3 * problem.landmarks()),
                                               to_matrix(nb::cast<Square>(prior_information))};
         if (problem.prior->information.rows() != 3 * problem.landmarks() || mean.size() != problem.X.size())
-            throw std::invalid_argument("prior: expected the mean (n, 3) and the information (3n, 3n) of all landmarks");
+            throw std::invalid_argument(
+                "prior: expected the mean (n, 3) and the information (3n, 3n) of all landmarks");
     }
     window::LmSummary summary;
     {
         const nb::gil_scoped_release release;
         window::Workspace workspace(problem.landmarks());
         summary = window::levenberg_marquardt(
-            problem, {.max_iterations = max_iterations, .initial_damping = initial_damping, .tolerance = tolerance}, workspace);
+            problem, {.max_iterations = max_iterations, .initial_damping = initial_damping, .tolerance = tolerance},
+            workspace);
     }
     nb::list poses;
     for (const window::ViewBlock& view : problem.views) poses.append(to_array(matrix(view.state.T_camera_target)));
@@ -135,14 +142,16 @@ void bind_tracker(nb::module_& m) {
                  new (self) Tracker(camera, to_points(X0), to_matrix(P0), options);
              })
         .def("update", &update)
-        .def("landmarks", [](const Tracker& t) { return to_array(std::vector<Vec3>(t.landmarks().begin(), t.landmarks().end())); })
+        .def("landmarks",
+             [](const Tracker& t) { return to_array(std::vector<Vec3>(t.landmarks().begin(), t.landmarks().end())); })
         .def("landmark_covariance", [](const Tracker& t) { return to_array(t.landmark_covariance()); })
         .def_prop_ro("noise_factor", &Tracker::noise_factor)
         .def_prop_ro("prior_factor", &Tracker::prior_factor)
         .def_prop_ro("views_in_window", &Tracker::views_in_window);
     m.def("refine", &refine_views);
-    m.def("solve_window", &solve_window, nb::arg("camera"), nb::arg("X"), nb::arg("T"), nb::arg("view_index"), nb::arg("landmarks"),
-          nb::arg("pixels"), nb::arg("covariances"), nb::arg("prior_mean") = nb::none(), nb::arg("prior_information") = nb::none(),
+    m.def("solve_window", &solve_window, nb::arg("camera"), nb::arg("X"), nb::arg("T"), nb::arg("view_index"),
+          nb::arg("landmarks"), nb::arg("pixels"), nb::arg("covariances"), nb::arg("prior_mean") = nb::none(),
+          nb::arg("prior_information") = nb::none(),
           nb::arg("loss_threshold") = std::numeric_limits<double>::infinity(), nb::arg("max_iterations") = 50,
           nb::arg("initial_damping") = 1e-4, nb::arg("tolerance") = 1e-9);
 }

@@ -11,7 +11,8 @@
 
 namespace fairlead {
 
-/// Pose of a roughly known target in every view, and the model getting better as views come in (mode `map`). docs/estimator.md.
+/// Pose of a roughly known target in every view, and the model getting better as views come in (mode `map`).
+/// docs/estimator.md.
 ///
 /// All memory is taken at construction; update() allocates nothing, throws nothing and reads no clock.
 class Tracker {
@@ -26,10 +27,10 @@ class Tracker {
     /// The pose of the target in the view taken at stamp_ns. Bad data end in the status, never in an exception.
     Estimate update(std::int64_t stamp_ns, std::span<const Observation> observations) noexcept;
 
-    [[nodiscard]] std::span<const Vec3> landmarks() const noexcept;   ///< current model [m]
-    [[nodiscard]] const MatX& landmark_covariance() const noexcept;   ///< 3N x 3N [m^2]
-    [[nodiscard]] double noise_factor() const noexcept;               ///< of the told pixel covariances, estimated [-]
-    [[nodiscard]] double prior_factor() const noexcept;               ///< of the told model covariance, estimated [-]
+    [[nodiscard]] std::span<const Vec3> landmarks() const noexcept;  ///< current model [m]
+    [[nodiscard]] const MatX& landmark_covariance() const noexcept;  ///< 3N x 3N [m^2]
+    [[nodiscard]] double noise_factor() const noexcept;              ///< of the told pixel covariances, estimated [-]
+    [[nodiscard]] double prior_factor() const noexcept;              ///< of the told model covariance, estimated [-]
     [[nodiscard]] int views_in_window() const noexcept;
 
   private:

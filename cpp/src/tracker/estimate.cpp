@@ -6,25 +6,38 @@ namespace fairlead {
 
 const char* to_string(Status status) noexcept {
     switch (status) {
-        case Status::acquiring: return "acquiring";
-        case Status::tracking: return "tracking";
-        case Status::coasting: return "coasting";
-        case Status::lost: return "lost";
+        case Status::acquiring:
+            return "acquiring";
+        case Status::tracking:
+            return "tracking";
+        case Status::coasting:
+            return "coasting";
+        case Status::lost:
+            return "lost";
     }
     return "";
 }
 
 const char* to_string(Reason reason) noexcept {
     switch (reason) {
-        case Reason::none: return "";
-        case Reason::too_few: return "too_few";
-        case Reason::degenerate: return "degenerate";
-        case Reason::no_consensus: return "no_consensus";
-        case Reason::gated: return "gated";
-        case Reason::ambiguous: return "ambiguous";
-        case Reason::stamp: return "stamp";
-        case Reason::diverged: return "diverged";
-        case Reason::alarm: return "alarm";
+        case Reason::none:
+            return "";
+        case Reason::too_few:
+            return "too_few";
+        case Reason::degenerate:
+            return "degenerate";
+        case Reason::no_consensus:
+            return "no_consensus";
+        case Reason::gated:
+            return "gated";
+        case Reason::ambiguous:
+            return "ambiguous";
+        case Reason::stamp:
+            return "stamp";
+        case Reason::diverged:
+            return "diverged";
+        case Reason::alarm:
+            return "alarm";
     }
     return "";
 }

@@ -9,11 +9,14 @@
 namespace fairlead {
 namespace {
 
-double log_binomial(double n, double k) noexcept { return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0); }
+double log_binomial(double n, double k) noexcept {
+    return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0);
+}
 
 }  // namespace
 
-double chance_consensus(const Camera& camera, std::span<const Observation> inflated, int inliers, double gate) noexcept {
+double chance_consensus(const Camera& camera, std::span<const Observation> inflated, int inliers,
+                        double gate) noexcept {
     const double image = static_cast<double>(camera.width) * static_cast<double>(camera.height);
     const double n = static_cast<double>(inflated.size());
     double p = 0.0;

@@ -9,13 +9,15 @@
 namespace fairlead {
 namespace {
 
-// The model's error is common to all views: evidence of older views counts less, so that it is not taken for independent.
+// The model's error is common to all views: evidence of older views counts less, so that it is not taken for
+// independent.
 constexpr double kMemory = 0.8;
 
 }  // namespace
 
 bool Hypotheses::consider(const pnp::PosePair& pair, double log_odds_limit) noexcept {
-    active_ = pair.best.ok && pair.other.ok && pair.distinct && 0.5 * (pair.other.cost - pair.best.cost) < log_odds_limit;
+    active_ =
+        pair.best.ok && pair.other.ok && pair.distinct && 0.5 * (pair.other.cost - pair.best.cost) < log_odds_limit;
     if (active_) {
         pose_[0] = pair.best;
         pose_[1] = pair.other;
@@ -26,7 +28,8 @@ bool Hypotheses::consider(const pnp::PosePair& pair, double log_odds_limit) noex
 }
 
 bool Hypotheses::update(const Camera& camera, const UncertainModel& model, std::span<const Observation> observations,
-                        double noise_factor, const TrackerOptions& options, std::vector<Observation>& scratch) noexcept {
+                        double noise_factor, const TrackerOptions& options,
+                        std::vector<Observation>& scratch) noexcept {
     inflate(camera, model, pose_[0].T_camera_target, noise_factor, observations, scratch);
     const double least = options.min_inlier_ratio * static_cast<double>(observations.size());
     for (int i = 0; i < 2; ++i) {

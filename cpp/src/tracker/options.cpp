@@ -10,7 +10,8 @@ namespace fairlead {
 namespace {
 
 void require(bool good, const char* name, double value, const char* expected) {
-    if (!good) throw std::invalid_argument(std::string(name) + ": got " + std::to_string(value) + ", expected " + expected);
+    if (!good)
+        throw std::invalid_argument(std::string(name) + ": got " + std::to_string(value) + ", expected " + expected);
 }
 
 }  // namespace
@@ -19,10 +20,10 @@ void validate(const TrackerOptions& options) {
     require(options.max_views >= 2 && options.max_views <= 4096, "max_views", options.max_views, "2 to 4096");
     require(options.loss_threshold > 0.0, "loss_threshold", options.loss_threshold, "a positive number");
     require(options.gate > 0.0, "gate", options.gate, "a positive number");
-    require(options.min_inlier_ratio > 0.0 && options.min_inlier_ratio <= 1.0, "min_inlier_ratio", options.min_inlier_ratio,
-            "more than 0 and at most 1");
-    require(options.coast_limit_s >= 0.0 && std::isfinite(options.coast_limit_s), "coast_limit_s", options.coast_limit_s,
-            "zero or more seconds");
+    require(options.min_inlier_ratio > 0.0 && options.min_inlier_ratio <= 1.0, "min_inlier_ratio",
+            options.min_inlier_ratio, "more than 0 and at most 1");
+    require(options.coast_limit_s >= 0.0 && std::isfinite(options.coast_limit_s), "coast_limit_s",
+            options.coast_limit_s, "zero or more seconds");
     require(options.max_step_rad > 0.0, "max_step_rad", options.max_step_rad, "a positive angle");
     require(options.confirmations >= 1, "confirmations", options.confirmations, "at least 1");
     require(options.ambiguity_log_odds >= 0.0, "ambiguity_log_odds", options.ambiguity_log_odds, "zero or more");

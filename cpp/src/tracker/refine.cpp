@@ -101,14 +101,15 @@ bool Batch::start_missing_views() {
         if (candidate.view >= 0) continue;
         TrackerOptions options = options_;
         options.seed += k;
-        const StartPose start = find_start(problem_.camera, model(), candidate.observations, std::nullopt, problem_.noise_factor, options,
-                                           scratch_);
+        const StartPose start = find_start(problem_.camera, model(), candidate.observations, std::nullopt,
+                                           problem_.noise_factor, options, scratch_);
         candidate.reason = start.reason;
         if (start.reason != Reason::none) continue;
         window::ViewBlock view(problem_.landmarks());
         view.stamp_ns = candidate.stamp_ns;
         view.state.T_camera_target = start.poses.best.T_camera_target;
-        for (const Observation& o : candidate.observations) view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
+        for (const Observation& o : candidate.observations)
+            view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
         candidate.view = static_cast<int>(problem_.views.size());
         problem_.views.push_back(std::move(view));
         added = true;
@@ -116,7 +117,8 @@ bool Batch::start_missing_views() {
     return added;
 }
 
-/// How much wider than its own threshold the loss must begin, so that it takes in what the wrong model does to inliers (90 % point).
+/// How much wider than its own threshold the loss must begin, so that it takes in what the wrong model does to inliers
+/// (90 % point).
 double Batch::widest_loss() {
     std::vector<double> ratios;
     for (const Candidate& candidate : candidates_) {
@@ -151,13 +153,15 @@ void Batch::graduate(double mu) {
         const double noise = problem_.noise_factor;
         const double prior = problem_.prior_factor;
         window::update_factors(problem_, Sigma_);
-        const double change = std::max(std::abs(problem_.noise_factor / noise - 1.0), std::abs(problem_.prior_factor / prior - 1.0));
+        const double change =
+            std::max(std::abs(problem_.noise_factor / noise - 1.0), std::abs(problem_.prior_factor / prior - 1.0));
         if (mu == 1.0 && change < kFactorChange) return;
         mu = std::max(1.0, 0.25 * mu);
     }
 }
 
-/// Tries every view from its mirror image and from a fresh consensus on the present model; true if one of them costs less.
+/// Tries every view from its mirror image and from a fresh consensus on the present model; true if one of them costs
+/// less.
 bool Batch::take_second_look() {
     bool moved = false;
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
@@ -167,13 +171,15 @@ bool Batch::take_second_look() {
         SE3& T = view.state.T_camera_target;
         TrackerOptions options = options_;
         options.seed += k + 7919;
-        const StartPose fresh = find_start(problem_.camera, model(), candidate.observations, std::nullopt, problem_.noise_factor, options,
-                                           scratch_);
+        const StartPose fresh = find_start(problem_.camera, model(), candidate.observations, std::nullopt,
+                                           problem_.noise_factor, options, scratch_);
         const SE3 starts[] = {pnp::mirrored(T, problem_.X, candidate.observations), fresh.poses.best.T_camera_target,
                               fresh.poses.other.T_camera_target};
         for (const SE3& start : starts) {
-            const pnp::RefineResult other = pnp::refine(start, problem_.X, candidate.observations, problem_.camera, problem_.told_loss());
-            if (!other.ok || !(cost(view, other.T_camera_target) < cost(view, T) - 1e-3 * problem_.noise_factor)) continue;
+            const pnp::RefineResult other =
+                pnp::refine(start, problem_.X, candidate.observations, problem_.camera, problem_.told_loss());
+            if (!other.ok || !(cost(view, other.T_camera_target) < cost(view, T) - 1e-3 * problem_.noise_factor))
+                continue;
             T = other.T_camera_target;
             moved = true;
         }
@@ -234,7 +240,8 @@ Refinement refine(const Camera& camera, std::span<const Vec3> X0, const MatX& P0
     validate(camera);
     validate(options);
     if (X0.size() < 4)
-        throw std::invalid_argument("landmarks: got " + std::to_string(X0.size()) + ", expected at least 4 (a pose needs them)");
+        throw std::invalid_argument("landmarks: got " + std::to_string(X0.size()) +
+                                    ", expected at least 4 (a pose needs them)");
     Batch batch(camera, X0, P0, options);
     for (const BatchView& view : views) batch.add(view);
     return batch.solve();

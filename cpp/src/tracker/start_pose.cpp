@@ -12,10 +12,10 @@
 namespace fairlead {
 namespace {
 
-constexpr double kPredictionShare = 0.7;      // inliers that make a prediction good enough
-constexpr double kMaxChance = 0.1;            // consensus sets that chance may be expected to offer
-constexpr double kMaxRotationSigma = 1.0;     // [rad] a pose less certain than this is no pose
-constexpr double kMaxRangeSigma = 0.5;        // [-] of the range
+constexpr double kPredictionShare = 0.7;   // inliers that make a prediction good enough
+constexpr double kMaxChance = 0.1;         // consensus sets that chance may be expected to offer
+constexpr double kMaxRotationSigma = 1.0;  // [rad] a pose less certain than this is no pose
+constexpr double kMaxRangeSigma = 0.5;     // [-] of the range
 
 const Vec3& landmark(const UncertainModel& model, const Observation& o) {
     return model.X[static_cast<std::size_t>(o.landmark)];
@@ -23,11 +23,13 @@ const Vec3& landmark(const UncertainModel& model, const Observation& o) {
 
 double median_of(std::vector<Observation>& o, double (*value)(const Observation&)) noexcept {
     const auto middle = o.begin() + static_cast<std::ptrdiff_t>(o.size() / 2);
-    std::nth_element(o.begin(), middle, o.end(), [&](const Observation& a, const Observation& b) { return value(a) < value(b); });
+    std::nth_element(o.begin(), middle, o.end(),
+                     [&](const Observation& a, const Observation& b) { return value(a) < value(b); });
     return value(*middle);
 }
 
-/// Pixels per metre of the target as the view shows it, robust to outliers; an upper guess, since the image foreshortens. o is consumed.
+/// Pixels per metre of the target as the view shows it, robust to outliers; an upper guess, since the image
+/// foreshortens. o is consumed.
 double pixels_per_metre(const UncertainModel& model, std::vector<Observation>& o) noexcept {
     Vec3 centre = Vec3::Zero();
     for (const Observation& p : o) centre += landmark(model, p) / static_cast<double>(o.size());
@@ -95,15 +97,20 @@ StartPose find_start(const Camera& camera, const UncertainModel& model, std::spa
             inflate(camera, model, consensus.pose.T_camera_target, noise_factor, observations, scratch);
             const pnp::PosePair pair = pnp::pose_pair(consensus.pose.T_camera_target, model.X, scratch, camera, loss);
             const bool prediction_wins = start.poses.best.ok && start.poses.best.cost < pair.best.cost;
-            if (prediction_wins) start.from_prediction = true;
-            else start.poses = pair;
+            if (prediction_wins)
+                start.from_prediction = true;
+            else
+                start.poses = pair;
         }
     }
     const pnp::RefineResult& best = start.poses.best;
-    if (!best.ok || best.inliers < std::max(4.0, options.min_inlier_ratio * n)) start.reason = Reason::no_consensus;
-    else if (!start.from_prediction && chance_consensus(camera, scratch, best.inliers, options.loss_threshold) > kMaxChance)
+    if (!best.ok || best.inliers < std::max(4.0, options.min_inlier_ratio * n))
         start.reason = Reason::no_consensus;
-    else if (!well_determined(best)) start.reason = Reason::degenerate;
+    else if (!start.from_prediction &&
+             chance_consensus(camera, scratch, best.inliers, options.loss_threshold) > kMaxChance)
+        start.reason = Reason::no_consensus;
+    else if (!well_determined(best))
+        start.reason = Reason::degenerate;
     return start;
 }
 

@@ -14,11 +14,11 @@ namespace {
 using window::ViewBlock;
 
 constexpr int kJoinIterations = 8;
-constexpr double kJoinStep = 0.01;           // squared step [sigma^2] below which the newest view is settled
-constexpr double kNonlinearity = 0.01;       // [sigma] error of the quadratic before its views are relinearised
-constexpr double kNews = 0.1;                // [sigma] error beyond which outliers are judged anew as well
-constexpr double kWidest = 16.0;             // how much wider the loss then begins
-constexpr std::size_t kFewViews = 16;        // windows this small are always solved anew
+constexpr double kJoinStep = 0.01;      // squared step [sigma^2] below which the newest view is settled
+constexpr double kNonlinearity = 0.01;  // [sigma] error of the quadratic before its views are relinearised
+constexpr double kNews = 0.1;           // [sigma] error beyond which outliers are judged anew as well
+constexpr double kWidest = 16.0;        // how much wider the loss then begins
+constexpr std::size_t kFewViews = 16;   // windows this small are always solved anew
 constexpr int kRelinearisations = 10;
 
 Eigen::Map<const VecX> stacked(const std::vector<Vec3>& X) {
@@ -27,7 +27,8 @@ Eigen::Map<const VecX> stacked(const std::vector<Vec3>& X) {
 
 }  // namespace
 
-Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, int max_views, double loss_threshold)
+Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, int max_views,
+                     double loss_threshold)
     : workspace_(static_cast<int>(X0.size())), max_views_(static_cast<std::size_t>(max_views)) {
     validate(camera);
     problem_.camera = camera;
@@ -75,13 +76,15 @@ bool Structure::newest_system(double mu) noexcept {
     return workspace_.llt.info() == Eigen::Success;
 }
 
-/// Gauss-Newton on the newest pose and the model with the loss narrowed from what the start needs to its own width (graduated non-convexity).
+/// Gauss-Newton on the newest pose and the model with the loss narrowed from what the start needs to its own width
+/// (graduated non-convexity).
 bool Structure::join_newest() noexcept {
     ViewBlock& view = problem_.views.back();
     squares_.clear();
     for (const window::Measurement& m : view.measurements) {
         Vec2 z;
-        if (!problem_.camera.project(view.state.T_camera_target * problem_.X[static_cast<std::size_t>(m.landmark)], z)) return false;
+        if (!problem_.camera.project(view.state.T_camera_target * problem_.X[static_cast<std::size_t>(m.landmark)], z))
+            return false;
         squares_.push_back((z - m.z).dot(m.information * (z - m.z)));
     }
     const double widest = *std::max_element(squares_.begin(), squares_.end());
@@ -154,7 +157,8 @@ void Structure::spare_one() noexcept {
     ViewBlock& view = problem_.views[index];
     bool usable = true;
     for (int iteration = 0; usable && iteration < 3; ++iteration) {
-        usable = window::linearise(problem_.camera, problem_.X, problem_.told_loss(), view) && window::factor_state(0.0, view);
+        usable = window::linearise(problem_.camera, problem_.X, problem_.told_loss(), view) &&
+                 window::factor_state(0.0, view);
         if (usable && iteration < 2)
             view.state.T_camera_target =
                 perturb(view.state.T_camera_target, -(view.L_inverse.transpose() * (view.L_inverse * view.g)));

@@ -16,8 +16,9 @@
 namespace fairlead {
 namespace {
 
-constexpr int kClockConfirmations = 10;  // views with earlier stamps, in order, that are a new clock rather than stray ones
-constexpr double kSameStep = 0.35;       // [rad] turn within which two views agree about a jump
+constexpr int kClockConfirmations =
+    10;                             // views with earlier stamps, in order, that are a new clock rather than stray ones
+constexpr double kSameStep = 0.35;  // [rad] turn within which two views agree about a jump
 constexpr double kDecisiveShare = 0.75;  // inliers that make a jump evident at once
 
 double turn(const SE3& a, const SE3& b) { return so3::log(a.R.transpose() * b.R).norm(); }
@@ -35,7 +36,9 @@ Estimate without_pose(Estimate estimate, Status status, Reason reason) {
 
 struct Tracker::State {
     State(const Camera& camera_in, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options_in)
-        : camera(camera_in), options(options_in), structure(camera_in, X0, P0, options_in.max_views, options_in.loss_threshold) {
+        : camera(camera_in),
+          options(options_in),
+          structure(camera_in, X0, P0, options_in.max_views, options_in.loss_threshold) {
         for (auto* list : {&clean, &scratch, &kept}) list->reserve(X0.size());
         inliers.reserve(X0.size());
     }
@@ -57,7 +60,9 @@ struct Tracker::State {
     std::vector<Observation> clean, scratch, kept;
     std::vector<int> inliers;
 
-    [[nodiscard]] UncertainModel model() const noexcept { return {structure.landmarks(), structure.landmark_covariances()}; }
+    [[nodiscard]] UncertainModel model() const noexcept {
+        return {structure.landmarks(), structure.landmark_covariances()};
+    }
     bool stamp_is_stray(std::int64_t stamp_ns) noexcept;
     bool jump_is_unproven(const StartPose& start) noexcept;
     Estimate without_fresh_pose(Estimate estimate, Reason reason) noexcept;
@@ -81,7 +86,8 @@ bool Tracker::State::stamp_is_stray(std::int64_t stamp_ns) noexcept {
     return false;
 }
 
-/// A turn beyond max_step_rad is believed at once only if the view leaves no doubt, else after several views that agree.
+/// A turn beyond max_step_rad is believed at once only if the view leaves no doubt, else after several views that
+/// agree.
 bool Tracker::State::jump_is_unproven(const StartPose& start) noexcept {
     const pnp::RefineResult& best = start.poses.best;
     const SE3& T = best.T_camera_target;
@@ -180,7 +186,8 @@ Estimate Tracker::State::update(std::int64_t stamp_ns, std::span<const Observati
     estimate.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
     const std::span<const Observation> taken = observations.first(std::min(observations.size(), std::size_t{1} << 20));
     estimate.dropped = sanitise(taken, static_cast<int>(structure.landmarks().size()), clean);
-    if (stamp_is_stray(stamp_ns)) return without_pose(estimate, status == Status::acquiring ? status : Status::lost, Reason::stamp);
+    if (stamp_is_stray(stamp_ns))
+        return without_pose(estimate, status == Status::acquiring ? status : Status::lost, Reason::stamp);
     last_stamp_ns = stamp_ns;
     has_stamp = true;
 
@@ -195,11 +202,11 @@ Estimate Tracker::State::update(std::int64_t stamp_ns, std::span<const Observati
         return fused(estimate, hypotheses.best().T_camera_target, true);
     }
     const std::optional<SE3> predicted = following ? std::optional<SE3>(coast.pose()) : std::nullopt;
-    const StartPose start =
-        find_start(camera, model(), clean, predicted, structure.noise_factor(), options, scratch);
+    const StartPose start = find_start(camera, model(), clean, predicted, structure.noise_factor(), options, scratch);
     if (start.reason != Reason::none) return without_fresh_pose(estimate, start.reason);
     if (following && jump_is_unproven(start)) return without_fresh_pose(estimate, Reason::gated);
-    if (!start.from_prediction && hypotheses.consider(start.poses, options.ambiguity_log_odds)) return undecided(estimate);
+    if (!start.from_prediction && hypotheses.consider(start.poses, options.ambiguity_log_odds))
+        return undecided(estimate);
     return fused(estimate, start.poses.best.T_camera_target, start.from_prediction);
 }
 
@@ -207,7 +214,8 @@ Tracker::Tracker(const Camera& camera, std::span<const Vec3> X0, const MatX& P0,
     validate(options);
     validate(camera);
     if (X0.size() < 4)
-        throw std::invalid_argument("landmarks: got " + std::to_string(X0.size()) + ", expected at least 4 (a pose needs them)");
+        throw std::invalid_argument("landmarks: got " + std::to_string(X0.size()) +
+                                    ", expected at least 4 (a pose needs them)");
     state_ = std::make_unique<State>(camera, X0, P0, options);
 }
 

@@ -15,7 +15,8 @@ double exponential_integral(double x) noexcept {
     return std::exp(-x) / fraction;
 }
 
-/// E[w s] / E[2 w] for Gaussian errors: what the robust loss takes from a variance estimate, docs/estimator.md eq. (16).
+/// E[w s] / E[2 w] for Gaussian errors: what the robust loss takes from a variance estimate, docs/estimator.md eq.
+/// (16).
 double gaussian_consistency(double a) noexcept {
     if (!(a < 100.0)) return 1.0;
     const double tail = std::exp(-0.5 * a);
@@ -32,12 +33,13 @@ void structure_covariance(const Workspace& workspace, MatX& Sigma) noexcept {
     workspace.llt.solveInPlace(Sigma);
 }
 
-StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma, double noise_factor, MatX& Yt,
-                             MatX& SigmaYt) noexcept {
+StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma,
+                             double noise_factor, MatX& Yt, MatX& SigmaYt) noexcept {
     Yt.setZero();
     for (std::size_t i = 0; i < view.terms.size(); ++i) {
         const int j = view.measurements[i].landmark;
-        Yt.block<3, ViewState::kDim>(3 * j, 0) = reduced_rows(view, view.terms[i], X_target[static_cast<std::size_t>(j)]);
+        Yt.block<3, ViewState::kDim>(3 * j, 0) =
+            reduced_rows(view, view.terms[i], X_target[static_cast<std::size_t>(j)]);
     }
     for (Eigen::Index c = 0; c < ViewState::kDim; ++c) SigmaYt.col(c).noalias() = Sigma * Yt.col(c);
     StateMatrix inner = Yt.transpose() * SigmaYt;

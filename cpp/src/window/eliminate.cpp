@@ -9,7 +9,8 @@ namespace fairlead::window {
 namespace {
 
 constexpr int kDim = ViewState::kDim;
-// Views per rank update: as many as keep the product's packed operands within Eigen's stack limit, so that nothing is allocated.
+// Views per rank update: as many as keep the product's packed operands within Eigen's stack limit, so that nothing is
+// allocated.
 int chunk_views(int landmarks) { return std::clamp(10000 / (3 * landmarks * kDim), 1, 16); }
 
 }  // namespace

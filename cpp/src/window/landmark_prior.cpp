@@ -28,8 +28,8 @@ double extent(std::span<const Vec3> X) {
 
 MatX landmark_covariance(std::span<const Vec3> X0, std::span<const Vec3> sigma, double scale_sigma) {
     if (sigma.size() != X0.size())
-        throw std::invalid_argument("sigma: got " + std::to_string(sigma.size()) + " entries for " + std::to_string(X0.size()) +
-                                    " landmarks, expected one each");
+        throw std::invalid_argument("sigma: got " + std::to_string(sigma.size()) + " entries for " +
+                                    std::to_string(X0.size()) + " landmarks, expected one each");
     if (X0.empty()) throw std::invalid_argument("landmarks: got none, expected at least one");
     const Eigen::Index n = static_cast<Eigen::Index>(X0.size());
     const Vec3 centre = centroid(X0);
@@ -49,7 +49,8 @@ LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance) {
     if (n == 0) throw std::invalid_argument("landmarks: got none, expected at least one");
     if (covariance.rows() != n || covariance.cols() != n)
         throw std::invalid_argument("prior covariance: got " + std::to_string(covariance.rows()) + " x " +
-                                    std::to_string(covariance.cols()) + ", expected " + std::to_string(n) + " x " + std::to_string(n));
+                                    std::to_string(covariance.cols()) + ", expected " + std::to_string(n) + " x " +
+                                    std::to_string(n));
     LandmarkPrior prior;
     prior.mean.resize(n);
     for (Eigen::Index j = 0; j < n / 3; ++j) prior.mean.segment<3>(3 * j) = X0[static_cast<std::size_t>(j)];

@@ -27,8 +27,7 @@ double posterior_cost(Problem& problem, std::span<const Vec3> X, std::span<const
         const auto& information = problem.prior->information;
         const auto x = stacked(X);
         const auto& mean = problem.prior->mean;
-        for (Eigen::Index c = 0; c < x.size(); ++c)
-            prior += (x[c] - mean[c]) * information.col(c).dot(x - mean);
+        for (Eigen::Index c = 0; c < x.size(); ++c) prior += (x[c] - mean[c]) * information.col(c).dot(x - mean);
     }
     return 0.5 * (data / problem.noise_factor + prior / problem.prior_factor);
 }

@@ -32,7 +32,8 @@ void check_honest(const Estimate& e) {
 
 struct Flight {
     explicit Flight(std::uint64_t seed, int views = 60)
-        : scene(make_scene(20, views, 0.5, 1.0, 1.0, seed)), tracker(scene.camera, scene.X_told, independent_prior(scene, 1.0)) {}
+        : scene(make_scene(20, views, 0.5, 1.0, 1.0, seed)),
+          tracker(scene.camera, scene.X_told, independent_prior(scene, 1.0)) {}
 
     Estimate fly(std::size_t k) { return update(k, scene.views[k]); }
     Estimate update(std::size_t k, const std::vector<Observation>& view) {
@@ -77,7 +78,8 @@ BOOST_AUTO_TEST_CASE(too_few_landmarks_coast_then_are_lost_then_come_back) {
     for (; k < 15; ++k) BOOST_TEST(flight.fly(k).ok());
     double before = 0.0;
     for (; k < 27; ++k) {  // 12 views: 0.48 s
-        const Estimate e = flight.update(k, {flight.scene.views[k][2], flight.scene.views[k][11], flight.scene.views[k][5]});
+        const Estimate e =
+            flight.update(k, {flight.scene.views[k][2], flight.scene.views[k][11], flight.scene.views[k][5]});
         BOOST_TEST((e.status == Status::coasting));
         BOOST_TEST((e.reason == Reason::too_few));
         BOOST_TEST(flight.error(k, e) < kSix);
@@ -139,7 +141,8 @@ BOOST_AUTO_TEST_CASE(wrong_matches_are_gated_or_nothing_is_claimed) {
         int confident = 0;
         for (std::size_t k = 0; k < 40; ++k) {
             auto view = flight.scene.views[k];
-            for (std::size_t i = 0; i < static_cast<std::size_t>(share * 20.0); ++i) view[(i * 7 + k) % 20].z = {pixel(random), pixel(random)};
+            for (std::size_t i = 0; i < static_cast<std::size_t>(share * 20.0); ++i)
+                view[(i * 7 + k) % 20].z = {pixel(random), pixel(random)};
             const Estimate e = flight.update(k, view);
             confident += e.ok();
             wrong += e.ok() && flight.error(k, e) > 2.0 * kSix;
@@ -188,7 +191,8 @@ BOOST_AUTO_TEST_CASE(a_flip_is_not_believed_at_once) {
         std::vector<Observation> view;  // seen from the other side: a real jump, with evidence
         for (int j = 0; j < 20; ++j) {
             Vec2 z;
-            BOOST_TEST_REQUIRE(flight.scene.camera.project(flipped * flight.scene.X_true[static_cast<std::size_t>(j)], z));
+            BOOST_TEST_REQUIRE(
+                flight.scene.camera.project(flipped * flight.scene.X_true[static_cast<std::size_t>(j)], z));
             view.push_back({j, z, Mat22::Identity()});
         }
         const Estimate e = flight.update(k, view);
@@ -217,14 +221,17 @@ BOOST_AUTO_TEST_CASE(wrong_intrinsics_raise_the_alarm) {
 
 BOOST_AUTO_TEST_CASE(caller_errors_are_named_at_construction) {
     const Scene scene = make_scene(20, 1, 0.0, 1.0, 1.0, 41);
-    const auto make = [&](const MatX& P0, const TrackerOptions& options) { return Tracker(scene.camera, scene.X_told, P0, options); };
+    const auto make = [&](const MatX& P0, const TrackerOptions& options) {
+        return Tracker(scene.camera, scene.X_told, P0, options);
+    };
     TrackerOptions none;
     none.max_views = 0;
     BOOST_CHECK_THROW(make(independent_prior(scene, 1.0), none), std::invalid_argument);
     BOOST_CHECK_THROW(make(MatX::Identity(59, 59), {}), std::invalid_argument);
     BOOST_CHECK_THROW(make(-MatX::Identity(60, 60), {}), std::invalid_argument);
     BOOST_CHECK_THROW(make(MatX::Constant(60, 60, kNaN), {}), std::invalid_argument);
-    BOOST_CHECK_THROW(Tracker(scene.camera, std::span(scene.X_told).first(3), MatX::Identity(9, 9)), std::invalid_argument);
+    BOOST_CHECK_THROW(Tracker(scene.camera, std::span(scene.X_told).first(3), MatX::Identity(9, 9)),
+                      std::invalid_argument);
     BOOST_CHECK_THROW(Tracker(Camera{}, scene.X_told, independent_prior(scene, 1.0)), std::invalid_argument);
 }
 
@@ -234,7 +241,8 @@ BOOST_AUTO_TEST_CASE(batch_of_bad_views_keeps_the_good_ones) {
     scene.views[5].resize(3);
     for (Observation& o : scene.views[7]) o.z.setConstant(kNaN);
     std::vector<BatchView> batch;
-    for (std::size_t k = 0; k < scene.views.size(); ++k) batch.push_back({static_cast<std::int64_t>(k), scene.views[k]});
+    for (std::size_t k = 0; k < scene.views.size(); ++k)
+        batch.push_back({static_cast<std::int64_t>(k), scene.views[k]});
     const Refinement all = refine(scene.camera, scene.X_told, independent_prior(scene, 1.0), batch);
     for (std::size_t k = 0; k < scene.views.size(); ++k) {
         check_honest(all.estimates[k]);

@@ -19,7 +19,8 @@ double nees(const Vec6& error, const Mat66& covariance) { return error.dot(covar
 
 VecX model_error(std::span<const Vec3> X, const Scene& scene) {
     VecX error(3 * static_cast<Eigen::Index>(X.size()));
-    for (std::size_t j = 0; j < X.size(); ++j) error.segment<3>(3 * static_cast<Eigen::Index>(j)) = X[j] - scene.X_true[j];
+    for (std::size_t j = 0; j < X.size(); ++j)
+        error.segment<3>(3 * static_cast<Eigen::Index>(j)) = X[j] - scene.X_true[j];
     return error;
 }
 
@@ -33,7 +34,8 @@ BOOST_AUTO_TEST_CASE(first_view_already_has_a_pose_and_the_model_improves) {
         const Estimate e = tracker.update(kFrame * static_cast<std::int64_t>(k), scene.views[k]);
         BOOST_TEST(e.ok());
         BOOST_TEST(e.inliers >= 19);
-        BOOST_TEST(nees(difference(e.T_camera_target, scene.T_true[k]), e.covariance) < 33.1);  // 99.999 % of chi-square, 6 dof
+        BOOST_TEST(nees(difference(e.T_camera_target, scene.T_true[k]), e.covariance) <
+                   33.1);  // 99.999 % of chi-square, 6 dof
         BOOST_TEST(e.resets == 0);
     }
     BOOST_TEST(model_error(tracker.landmarks(), scene).norm() < 0.7 * before);
@@ -50,7 +52,8 @@ BOOST_AUTO_TEST_CASE(window_that_holds_everything_is_the_batch) {
         batch.push_back({stamp, scene.views[k]});
     }
     const Refinement all = refine(scene.camera, scene.X_told, independent_prior(scene, 0.5), batch);
-    // The factors are measured once a view here and to convergence there: a small part of one standard deviation in 60 dimensions.
+    // The factors are measured once a view here and to convergence there: a small part of one standard deviation in 60
+    // dimensions.
     const VecX shift = model_error(tracker.landmarks(), scene) - model_error(all.X, scene);
     BOOST_TEST(std::sqrt(shift.dot(all.covariance.llt().solve(shift))) < 0.5);
     BOOST_TEST(nees(difference(last.T_camera_target, all.estimates.back().T_camera_target), last.covariance) < 0.04);
@@ -73,7 +76,8 @@ BOOST_AUTO_TEST_CASE(small_window_forgets_nothing) {
     // Eight views alone would leave 25 times the covariance of the shape.
     BOOST_TEST(small.landmark_covariance().trace() < 1.05 * all.covariance.trace());
     const VecX error = model_error(small.landmarks(), scene);
-    BOOST_TEST(error.dot(small.landmark_covariance().llt().solve(error)) < 112.0);  // 99.99 % of chi-square, 60 dof, rounded up
+    BOOST_TEST(error.dot(small.landmark_covariance().llt().solve(error)) <
+               112.0);  // 99.99 % of chi-square, 60 dof, rounded up
 }
 
 BOOST_AUTO_TEST_CASE(a_wrong_sigma_is_measured) {
@@ -81,7 +85,8 @@ BOOST_AUTO_TEST_CASE(a_wrong_sigma_is_measured) {
     for (auto& view : scene.views)
         for (Observation& o : view) o.covariance *= 0.25;  // told 1 px where it is 2
     Tracker tracker(scene.camera, scene.X_told, independent_prior(scene, 1.0));
-    for (std::size_t k = 0; k < scene.views.size(); ++k) (void)tracker.update(kFrame * static_cast<std::int64_t>(k), scene.views[k]);
+    for (std::size_t k = 0; k < scene.views.size(); ++k)
+        (void)tracker.update(kFrame * static_cast<std::int64_t>(k), scene.views[k]);
     BOOST_TEST(tracker.noise_factor() > 3.6);
     BOOST_TEST(tracker.noise_factor() < 4.4);
 }

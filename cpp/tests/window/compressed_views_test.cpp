@@ -21,11 +21,13 @@ std::vector<Vec3> transformed(const std::vector<Vec3>& X, double s, const Vec3& 
 window::CompressedViews compressed(const Scene& scene, std::mt19937_64& random) {
     window::CompressedViews sum(scene.X_told);
     for (std::size_t k = 0; k < scene.views.size(); ++k) {
-        std::vector<Vec3> X = transformed(scene.X_told, 1.0 + 0.01 * gaussian(random, 1.0).x(), gaussian(random, 0.02), gaussian(random, 1.0));
+        std::vector<Vec3> X = transformed(scene.X_told, 1.0 + 0.01 * gaussian(random, 1.0).x(), gaussian(random, 0.02),
+                                          gaussian(random, 1.0));
         for (Vec3& x : X) x += gaussian(random, 0.2);
         window::ViewBlock view(static_cast<int>(X.size()));
         view.state.T_camera_target = scene.T_true[k];
-        for (const Observation& o : scene.views[k]) view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
+        for (const Observation& o : scene.views[k])
+            view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
         BOOST_TEST_REQUIRE(window::linearise(scene.camera, X, Loss{1e12}, view));
         BOOST_TEST_REQUIRE(window::factor_state(0.0, view));
         sum.add(view, X);
@@ -41,7 +43,8 @@ BOOST_AUTO_TEST_CASE(value_is_invariant_under_every_similarity) {
     window::CompressedViews sum = compressed(scene, random);
     const double value = sum.value(scene.X_true);
     for (int i = 0; i < 20; ++i) {
-        const auto moved = transformed(scene.X_true, std::exp(gaussian(random, 0.3).x()), gaussian(random, 0.8), gaussian(random, 50.0));
+        const auto moved = transformed(scene.X_true, std::exp(gaussian(random, 0.3).x()), gaussian(random, 0.8),
+                                       gaussian(random, 50.0));
         BOOST_TEST(std::abs(sum.value(moved) - value) < 1e-8 * std::abs(value));
     }
 }

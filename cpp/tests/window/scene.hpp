@@ -26,7 +26,8 @@ inline Vec3 gaussian(std::mt19937_64& random, double sigma) {
 
 /// Camera at azimuth and elevation [rad] and range [m] looking at the target's middle, x right, y down, z forward.
 inline SE3 look_at(double azimuth, double elevation, double range, const Vec3& middle) {
-    const Vec3 forward(-std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth), -std::sin(elevation));
+    const Vec3 forward(-std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth),
+                       -std::sin(elevation));
     const Vec3 right = forward.cross(Vec3::UnitZ()).normalized();
     SE3 T;
     T.R.row(0) = right.transpose();
@@ -62,7 +63,9 @@ inline Scene make_scene(int landmarks, int views, double arc_rad, double sigma_p
 }
 
 inline MatX independent_prior(const Scene& scene, double sigma_m) {
-    return sigma_m * sigma_m * MatX::Identity(3 * static_cast<Eigen::Index>(scene.X_told.size()), 3 * static_cast<Eigen::Index>(scene.X_told.size()));
+    return sigma_m * sigma_m *
+           MatX::Identity(3 * static_cast<Eigen::Index>(scene.X_told.size()),
+                          3 * static_cast<Eigen::Index>(scene.X_told.size()));
 }
 
 /// The batch problem of a scene, started from the true poses and the told model.
@@ -75,7 +78,8 @@ inline window::Problem make_problem(const Scene& scene, double sigma_m) {
     for (std::size_t k = 0; k < scene.views.size(); ++k) {
         window::ViewBlock view(static_cast<int>(scene.X_told.size()));
         view.state.T_camera_target = scene.T_true[k];
-        for (const Observation& o : scene.views[k]) view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
+        for (const Observation& o : scene.views[k])
+            view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
         problem.views.push_back(std::move(view));
     }
     return problem;

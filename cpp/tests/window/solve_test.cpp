@@ -17,7 +17,8 @@ double cost_at(window::Problem& problem, const VecX& d) {
     const Eigen::Index n = 3 * problem.landmarks();
     for (std::size_t j = 0; j < X.size(); ++j) X[j] += d.segment<3>(3 * static_cast<Eigen::Index>(j));
     for (std::size_t k = 0; k < problem.views.size(); ++k)
-        T.push_back(perturb(problem.views[k].state.T_camera_target, d.segment<6>(n + 6 * static_cast<Eigen::Index>(k))));
+        T.push_back(
+            perturb(problem.views[k].state.T_camera_target, d.segment<6>(n + 6 * static_cast<Eigen::Index>(k))));
     return window::posterior_cost(problem, X, T);
 }
 
@@ -54,7 +55,8 @@ BOOST_AUTO_TEST_CASE(reduced_gradient_is_the_gradient_with_the_states_eliminated
         BOOST_TEST((g - view.g / 1.7).norm() < 1e-4 * (1.0 + g.norm()));
         for (std::size_t i = 0; i < view.terms.size(); ++i) {
             const int j = view.measurements[i].landmark;
-            const Eigen::Matrix<double, 3, 6> Yt = window::reduced_rows(view, view.terms[i], problem.X[static_cast<std::size_t>(j)]);
+            const Eigen::Matrix<double, 3, 6> Yt =
+                window::reduced_rows(view, view.terms[i], problem.X[static_cast<std::size_t>(j)]);
             reduced.segment<3>(3 * j) -= Yt * (view.L_inverse * g);
         }
     }
@@ -84,8 +86,8 @@ BOOST_AUTO_TEST_CASE(structure_system_is_the_schur_complement_of_the_full_hessia
             H += row.transpose() * m.information * row;
         }
     }
-    const MatX schur = H.topLeftCorner(18, 18) - H.topRightCorner(18, 24) *
-                                                     H.bottomRightCorner(24, 24).ldlt().solve(MatX(H.bottomLeftCorner(24, 18)));
+    const MatX schur = H.topLeftCorner(18, 18) - H.topRightCorner(18, 24) * H.bottomRightCorner(24, 24).ldlt().solve(
+                                                                                MatX(H.bottomLeftCorner(24, 18)));
     const MatX S = workspace.S.selfadjointView<Eigen::Lower>();
     BOOST_TEST((S - schur).norm() < 1e-9 * schur.norm());
 }

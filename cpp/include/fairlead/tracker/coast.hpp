@@ -9,14 +9,18 @@
 
 namespace fairlead {
 
-/// Where the target may be while no view fixes its pose: the last pose, with a covariance that grows as the pose has been seen to move,
-///   Sigma(t) = Sigma_last + E[v v^T] (t - t_last)^2,  v the pose's mean rate over intervals of at least half a second. docs/estimator.md eq. (18).
+/// Where the target may be while no view fixes its pose: the last pose, with a covariance that grows as the pose has
+/// been seen to move,
+///   Sigma(t) = Sigma_last + E[v v^T] (t - t_last)^2,  v the pose's mean rate over intervals of at least half a second.
+///   docs/estimator.md eq. (18).
 class Coast {
   public:
     void restart(std::int64_t stamp_ns, const SE3& T, const Mat66& covariance) noexcept;
     void observe(std::int64_t stamp_ns, const SE3& T, const Mat66& covariance) noexcept;
 
-    [[nodiscard]] double age_s(std::int64_t stamp_ns) const noexcept { return 1e-9 * static_cast<double>(stamp_ns - stamp_ns_); }
+    [[nodiscard]] double age_s(std::int64_t stamp_ns) const noexcept {
+        return 1e-9 * static_cast<double>(stamp_ns - stamp_ns_);
+    }
     [[nodiscard]] const SE3& pose() const noexcept { return T_; }
     [[nodiscard]] Mat66 covariance(std::int64_t stamp_ns) const noexcept;
 
@@ -29,7 +33,9 @@ class Coast {
     Mat66 rate_ = Mat66::Identity();  ///< E[v v^T]
 };
 
-/// A pose with prior N(T, covariance) updated by a view too poor to fix it: iterated Gauss-Newton on inflated observations.
-void update_pose(const Camera& camera, const UncertainModel& model, std::span<const Observation> inflated, SE3& T, Mat66& covariance) noexcept;
+/// A pose with prior N(T, covariance) updated by a view too poor to fix it: iterated Gauss-Newton on inflated
+/// observations.
+void update_pose(const Camera& camera, const UncertainModel& model, std::span<const Observation> inflated, SE3& T,
+                 Mat66& covariance) noexcept;
 
 }  // namespace fairlead

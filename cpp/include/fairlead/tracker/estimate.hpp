@@ -36,13 +36,13 @@ struct Estimate {
     std::int64_t stamp_ns = 0;
     Status status = Status::acquiring;
     Reason reason = Reason::none;
-    SE3 T_camera_target;             ///< in the frame of the prior model
-    Mat66 covariance;                ///< of xi in T Exp(xi), xi = (rho, phi) [m, rad], the model's uncertainty included
+    SE3 T_camera_target;  ///< in the frame of the prior model
+    Mat66 covariance;     ///< of xi in T Exp(xi), xi = (rho, phi) [m, rad], the model's uncertainty included
     int inliers = 0;
-    int dropped = 0;                 ///< observations that were unusable (NaN, unknown, duplicate, no covariance)
+    int dropped = 0;  ///< observations that were unusable (NaN, unknown, duplicate, no covariance)
     double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();  ///< over the inliers
-    double information_gained = 0.0;  ///< half the growth of log det of the model's information [nats]
-    int resets = 0;                  ///< counts jumps of the pose that are not motion
+    double information_gained = 0.0;        ///< half the growth of log det of the model's information [nats]
+    int resets = 0;                         ///< counts jumps of the pose that are not motion
     std::span<const int> inlier_landmarks;  ///< valid until the next update
 
     [[nodiscard]] bool ok() const noexcept { return status == Status::tracking || status == Status::coasting; }

@@ -7,15 +7,18 @@
 namespace fairlead {
 
 struct TrackerOptions {
-    int max_views = 64;                ///< keyframes kept and relinearised; more cost time, fewer lose accuracy while the model is poor
-    double loss_threshold = 9.21034037197618;  ///< [-] squared whitened residual where the robust loss turns; chi-square, 2 dof, 99 %
-    double gate = 18.420680743952367;  ///< [-] squared whitened innovation beyond which an observation is an outlier; 99.99 %
-    double min_inlier_ratio = 0.4;     ///< [-] fewer inliers than this share of the observations is no pose
-    double coast_limit_s = 0.5;        ///< [s] without a fresh pose until the estimate is no longer valid
+    int max_views =
+        64;  ///< keyframes kept and relinearised; more cost time, fewer lose accuracy while the model is poor
+    double loss_threshold =
+        9.21034037197618;  ///< [-] squared whitened residual where the robust loss turns; chi-square, 2 dof, 99 %
+    double gate =
+        18.420680743952367;  ///< [-] squared whitened innovation beyond which an observation is an outlier; 99.99 %
+    double min_inlier_ratio = 0.4;             ///< [-] fewer inliers than this share of the observations is no pose
+    double coast_limit_s = 0.5;                ///< [s] without a fresh pose until the estimate is no longer valid
     double max_step_rad = 1.5707963267948966;  ///< [rad] a larger turn between two views needs evidence
-    int confirmations = 3;             ///< views that must agree before such a step is believed
-    double ambiguity_log_odds = 4.5;   ///< [nats] two poses closer than this are both kept
-    std::uint64_t seed = 0;            ///< of the consensus search
+    int confirmations = 3;                     ///< views that must agree before such a step is believed
+    double ambiguity_log_odds = 4.5;           ///< [nats] two poses closer than this are both kept
+    std::uint64_t seed = 0;                    ///< of the consensus search
 };
 
 /// Throws std::invalid_argument naming the option, what came and what was expected.

@@ -18,7 +18,8 @@ struct UncertainModel {
     std::span<const Mat33> covariance;
 };
 
-/// Observations with the model's error added to the noise: S = f S_j + B Sigma_j B^T, B = d pi / d X at T, docs/estimator.md eq. (17).
+/// Observations with the model's error added to the noise: S = f S_j + B Sigma_j B^T, B = d pi / d X at T,
+/// docs/estimator.md eq. (17).
 void inflate(const Camera& camera, const UncertainModel& model, const SE3& T_camera_target, double noise_factor,
              std::span<const Observation> observations, std::vector<Observation>& out) noexcept;
 
@@ -28,10 +29,11 @@ struct StartPose {
     Reason reason = Reason::none;  ///< none: poses.best is usable
 };
 
-/// The pose from which the joint solution starts: refined from the prediction if that explains the view, else by consensus over the view;
-/// whichever costs less. scratch must have capacity for the observations.
-[[nodiscard]] StartPose find_start(const Camera& camera, const UncertainModel& model, std::span<const Observation> observations,
-                                   const std::optional<SE3>& predicted, double noise_factor, const TrackerOptions& options,
+/// The pose from which the joint solution starts: refined from the prediction if that explains the view, else by
+/// consensus over the view; whichever costs less. scratch must have capacity for the observations.
+[[nodiscard]] StartPose find_start(const Camera& camera, const UncertainModel& model,
+                                   std::span<const Observation> observations, const std::optional<SE3>& predicted,
+                                   double noise_factor, const TrackerOptions& options,
                                    std::vector<Observation>& scratch) noexcept;
 
 }  // namespace fairlead

@@ -19,15 +19,18 @@ struct Fusion {
     double squares = 0.0;             ///< sum w s of this view, told units
 };
 
-/// The landmark model and all that the views said about it: a bounded window of views that are relinearised, and the compressed rest.
-/// Between relinearisations everything but the newest view is one quadratic in X. docs/estimator.md section 4.
+/// The landmark model and all that the views said about it: a bounded window of views that are relinearised, and the
+/// compressed rest. Between relinearisations everything but the newest view is one quadratic in X. docs/estimator.md
+/// section 4.
 class Structure {
   public:
     /// Throws std::invalid_argument for a bad camera, prior or capacity.
     Structure(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, int max_views, double loss_threshold);
 
-    /// Joint estimate of X and this view's pose, starting from T_start; the view stays in the window or is compressed. Allocates nothing.
-    [[nodiscard]] Fusion fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<const Observation> observations) noexcept;
+    /// Joint estimate of X and this view's pose, starting from T_start; the view stays in the window or is compressed.
+    /// Allocates nothing.
+    [[nodiscard]] Fusion fuse(std::int64_t stamp_ns, const SE3& T_start,
+                              std::span<const Observation> observations) noexcept;
 
     [[nodiscard]] std::span<const Vec3> landmarks() const noexcept { return problem_.X; }
     [[nodiscard]] std::span<const Mat33> landmark_covariances() const noexcept { return blocks_; }
@@ -52,7 +55,8 @@ class Structure {
     std::vector<Eigen::Vector4d> descriptors_;
     double radius_ = 1.0;
 
-    // The quadratic of all but the newest view, told units, gradient at X_data_; its views were linearised at X_window_.
+    // The quadratic of all but the newest view, told units, gradient at X_data_; its views were linearised at
+    // X_window_.
     MatX H_data_;
     VecX g_data_;
     std::vector<Vec3> X_data_, X_window_;

@@ -12,10 +12,10 @@ namespace fairlead::window {
 
 /// What views that left the window still say about the model.
 ///
-/// A view with its pose eliminated is a quadratic in the model with a null space of seven directions N(X), which turns with X. Sums of
-/// quadratics taken at different X would lose it and invent knowledge of the model's orientation. So the sum is kept in the shape
-/// y = S(X) X, the model aligned onto the first one: E(X) = 1/2 u^T Lambda u - eta^T u + c, u = y(X) - X_ref, docs/estimator.md eq. (11). It is
-/// invariant under every similarity of X, exactly and for ever.
+/// A view with its pose eliminated is a quadratic in the model with a null space of seven directions N(X), which turns
+/// with X. Sums of quadratics taken at different X would lose it and invent knowledge of the model's orientation. So
+/// the sum is kept in the shape y = S(X) X, the model aligned onto the first one: E(X) = 1/2 u^T Lambda u - eta^T u +
+/// c, u = y(X) - X_ref, docs/estimator.md eq. (11). It is invariant under every similarity of X, exactly and for ever.
 class CompressedViews {
   public:
     explicit CompressedViews(std::span<const Vec3> X_ref);
@@ -23,7 +23,8 @@ class CompressedViews {
     /// Takes a view linearised at X (told covariances, robust weights frozen) with its state factored.
     void add(const ViewBlock& view, std::span<const Vec3> X) noexcept;
 
-    /// Hessian (both triangles) and gradient with respect to X, value at X; all twice-negative-log units of sum rho, i.e. E = value / 2.
+    /// Hessian (both triangles) and gradient with respect to X, value at X; all twice-negative-log units of sum rho,
+    /// i.e. E = value / 2.
     void linearise(std::span<const Vec3> X) noexcept;
     [[nodiscard]] double value(std::span<const Vec3> X) noexcept;
 

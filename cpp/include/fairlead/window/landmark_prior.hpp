@@ -21,8 +21,9 @@ struct LandmarkPrior {
     [[nodiscard]] int landmarks() const noexcept { return static_cast<int>(mean.size() / 3); }
 };
 
-/// Throws std::invalid_argument unless the covariance is symmetric, finite and positive semidefinite. Directions without variance
-/// (a landmark with sigma 0 is fixed) get kFixedSigma of the model's extent, so that the information stays finite.
+/// Throws std::invalid_argument unless the covariance is symmetric, finite and positive semidefinite. Directions
+/// without variance (a landmark with sigma 0 is fixed) get kFixedSigma of the model's extent, so that the information
+/// stays finite.
 [[nodiscard]] LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance);
 
 /// Standard deviation of what is held fixed, in units of the model's extent.

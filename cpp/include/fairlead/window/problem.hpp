@@ -20,11 +20,11 @@ struct Problem {
     Camera camera;
     std::optional<LandmarkPrior> prior;
     std::optional<CompressedViews> compressed;
-    std::vector<Vec3> X;            ///< landmarks, target frame [m]
+    std::vector<Vec3> X;  ///< landmarks, target frame [m]
     std::vector<ViewBlock> views;
-    double noise_factor = 1.0;      ///< multiplies every told covariance
-    double prior_factor = 1.0;      ///< multiplies P0
-    Loss loss;                      ///< threshold in units of the estimated noise
+    double noise_factor = 1.0;  ///< multiplies every told covariance
+    double prior_factor = 1.0;  ///< multiplies P0
+    Loss loss;                  ///< threshold in units of the estimated noise
 
     [[nodiscard]] int landmarks() const noexcept { return static_cast<int>(X.size()); }
     /// The loss in told units: rho_f(s) = f rho(s / f).
@@ -36,7 +36,7 @@ struct Workspace {
     explicit Workspace(int landmarks);
 
     Eliminator eliminator;
-    MatX S;                     ///< 3N x 3N, lower triangle
+    MatX S;  ///< 3N x 3N, lower triangle
     VecX g, dX, D, step;
     Eigen::LLT<MatX> llt;
     std::vector<Vec3> X_trial;
@@ -50,7 +50,8 @@ struct Workspace {
 /// Linearises all views and compressed views at the current estimate. False if a view has become unusable.
 [[nodiscard]] bool linearise(Problem& problem) noexcept;
 
-/// Assembles the data's part of S, g and the damping diagonal D in told units, states eliminated with damping; false if a state is singular.
+/// Assembles the data's part of S, g and the damping diagonal D in told units, states eliminated with damping; false if
+/// a state is singular.
 [[nodiscard]] bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexcept;
 
 /// Divides the data's part by the noise factor and adds the prior at X: the system of E itself.

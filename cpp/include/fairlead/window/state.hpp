@@ -10,7 +10,8 @@
 
 namespace fairlead::window {
 
-/// What is unknown of one view: its pose. A motion prior would append velocity and acceleration here, and kDim grows with it.
+/// What is unknown of one view: its pose. A motion prior would append velocity and acceleration here, and kDim grows
+/// with it.
 struct ViewState {
     static constexpr int kDim = 6;
     SE3 T_camera_target;
@@ -39,13 +40,13 @@ struct ViewBlock {
     ViewState state;
     std::vector<Measurement> measurements;
 
-    std::vector<PointTerm> terms;                   ///< one per measurement
-    StateMatrix H = StateMatrix::Zero();            ///< Hessian of the state alone
-    StateVector g = StateVector::Zero();            ///< its gradient
-    StateMatrix L_inverse = StateMatrix::Zero();    ///< inverse Cholesky factor of the (damped) H
-    double cost = 0.0;                              ///< sum rho(s)
-    double weighted_squares = 0.0;                  ///< sum w s
-    double weights = 0.0;                           ///< sum w
+    std::vector<PointTerm> terms;                 ///< one per measurement
+    StateMatrix H = StateMatrix::Zero();          ///< Hessian of the state alone
+    StateVector g = StateVector::Zero();          ///< its gradient
+    StateMatrix L_inverse = StateMatrix::Zero();  ///< inverse Cholesky factor of the (damped) H
+    double cost = 0.0;                            ///< sum rho(s)
+    double weighted_squares = 0.0;                ///< sum w s
+    double weights = 0.0;                         ///< sum w
 
     explicit ViewBlock(int max_landmarks = 0) {
         measurements.reserve(static_cast<std::size_t>(max_landmarks));
