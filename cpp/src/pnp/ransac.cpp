@@ -161,6 +161,7 @@ RansacResult ransac(std::span<const Vec3> X_target, std::span<const Observation>
         needed = iterations_needed(static_cast<double>(search.best.inliers) / static_cast<double>(usable), options);
     }
     if (!search.found) return result;
+    optimise_locally(search);  // the loss makes local minima; from the best pose the wide one leads out of some
     result.pose = refine(search.T_best, X_target, observations, camera, loss);
     result.ok = result.pose.ok && result.pose.inliers >= 4 && four_places(search, result.pose.T_camera_target);
     return result;

@@ -56,6 +56,22 @@ BOOST_AUTO_TEST_CASE(symmetric_pyramid_by_hand) {
     BOOST_CHECK(best < 1e-12);
 }
 
+BOOST_AUTO_TEST_CASE(isosceles_triangle_seen_along_its_axis_of_symmetry) {
+    // Then one of the two forms splits by itself, whichever corner is the apex.
+    const Three corners{Vec3(-1, 0.3, 0), Vec3(1, 0.3, 0), Vec3(0, -1.2, 0.4)};
+    const SE3 truth{Mat33::Identity(), Vec3(0, 0.2, 5)};
+    for (std::size_t apex = 0; apex < 3; ++apex) {
+        const Three X{corners[(apex + 1) % 3], corners[(apex + 2) % 3], corners[apex]};
+        const Three rays{truth * X[0], truth * X[1], truth * X[2]};
+        Four T;
+        const int count = pnp::p3p(rays, X, T);
+        double best = 1e9;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+            best = std::min(best, distance(T[i], truth, 1.0));
+        BOOST_TEST(best < 1e-9);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(finds_the_true_pose) {
     Random random(1);
     for (const double range : {2.0, 10.0, 1e3, 1e5}) {
@@ -118,6 +134,7 @@ BOOST_AUTO_TEST_CASE(degenerate_triples_have_no_answer) {
     Four T;
     BOOST_TEST(pnp::p3p(rays, X, T) > 0);
     BOOST_TEST(pnp::p3p(rays, {Vec3(0, 0, 0), Vec3(1, 2, 3), Vec3(2, 4, 6)}, T) == 0);  // collinear
+    BOOST_TEST(pnp::p3p(rays, {Vec3(0, 0, 0), Vec3(1, 1e-12, 0), Vec3(2, 0, 0)}, T) == 0);
     BOOST_TEST(pnp::p3p(rays, {Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(2, 4, 7)}, T) == 0);  // two the same
     BOOST_TEST(pnp::p3p(rays, {Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(1, 2, 3)}, T) == 0);
     BOOST_TEST(pnp::p3p({Vec3(0, 0, 1), Vec3(0.1, 0, 1), Vec3(0.2, 0, 1)}, X, T) == 0);  // rays in a plane
