@@ -39,7 +39,7 @@ demo: setup
 
 ## test     everything that continuous integration runs
 .PHONY: test
-test: setup check-format lint cpp-test cpp-test-sanitized pytest
+test: setup check-format lint cpp-test cpp-test-sanitized pytest-opencv4 pytest
 
 ## fmt      format all sources
 .PHONY: fmt
@@ -63,6 +63,8 @@ stubs: setup
 lock:
 	uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header --python-version 3.11 \
 	    --group dev --output-file requirements/dev.txt pyproject.toml
+	echo 'opencv-python-headless>=4.10,<5' | uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header \
+	    --no-deps --python-version 3.11 --output-file requirements/opencv4.txt -
 
 ## bench    accuracy against the committed baseline, and time against Ceres, GTSAM and scipy
 .PHONY: bench
@@ -149,6 +151,16 @@ $(STAMPS)/compile-commands: $(STAMPS)/environment $(CMAKE_FILES)
 	@touch $@
 
 # ---- Python
+
+# Both current major versions of OpenCV: the package runs with either, and they do not answer alike.
+OPENCV_TESTS := tests/unit/test_opencv.py tests/unit/test_baselines.py tests/unit/detect tests/real/test_marker_pen_detection.py
+.PHONY: pytest-opencv4
+pytest-opencv4: setup $(STAMPS)/opencv4
+	PYTHONPATH=build/opencv4 $(BIN)/python -m pytest --numprocesses $(JOBS) --quiet $(OPENCV_TESTS)
+$(STAMPS)/opencv4: $(STAMPS)/environment requirements/opencv4.txt
+	rm -rf build/opencv4
+	$(BIN)/python -m pip install --quiet --no-deps --require-hashes --target build/opencv4 --requirement requirements/opencv4.txt
+	@touch $@
 
 .PHONY: pytest
 pytest: setup
