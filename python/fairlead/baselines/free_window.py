@@ -22,9 +22,9 @@ from fairlead.types import Camera, Estimate, Matrix4, Points3, Poses, Target, Vi
 class FreeWindowOptions:
     """What the publication leaves open."""
 
-    window_size: int = 10
+    window_size: int = 20
     """Keyframes in the window [views]. More see more angle, and the first pose comes later."""
-    min_turn_deg: float = 1.0
+    min_turn_deg: float = 0.5
     """Turn of the viewing direction that makes a keyframe [deg]. Too small: no parallax; too large: a late start."""
     min_range_ratio: float = 1.1
     """Change of range, either way, that makes a keyframe [-]."""
