@@ -137,7 +137,8 @@ def test_a_run_without_any_pose_is_all_failure_and_no_number(count: int) -> None
     else:
         assert math.isnan(values["coverage_percent"])
         assert "failure_percent" not in values
-    json.dumps(evaluation_to_json(found), allow_nan=False)
+    document = json.loads(json.dumps(evaluation_to_json(found), allow_nan=False))
+    assert document["pose"]["raw"]["rotation_deg"]["summary"]["mean"] is None
 
 
 def test_json_has_no_nan_and_keeps_infinity() -> None:

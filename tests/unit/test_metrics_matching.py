@@ -42,6 +42,12 @@ def test_nearest_within_the_tolerance_closest_pairs_first() -> None:
     assert (matching.n_by_nearest, matching.largest_offset_ns, matching.n_truth_left_over) == (2, 400, 1)
 
 
+def test_the_closer_of_two_true_poses_gets_the_frame_whatever_their_order() -> None:
+    for order in ([1400, 1100], [1100, 1400]):
+        matching = match_by_stamp([truth(9, stamp) for stamp in order], [estimate(0, 1000)], tolerance_ns=1000)
+        assert matching.pairs == ((order.index(1100), 0),)
+
+
 def test_outside_the_tolerance_nothing_matches() -> None:
     assert match_by_stamp([truth(0, 0)], [estimate(0, 11)], tolerance_ns=10).n_matched == 0
     assert match_by_stamp([truth(0, 0)], [estimate(0, 10)], tolerance_ns=10).n_matched == 1
