@@ -63,14 +63,13 @@ def test_bound_and_nees(cell):
     [
         ("clean", Cell(sigma_px=0.25, angle_deg=5.0, model_sigma_m=0.5)),
         ("clean", Cell(sigma_px=8.0, angle_deg=90.0, model_sigma_m=0.1)),
-        ("outliers-10", Cell(sigma_px=1.0, angle_deg=90.0, model_sigma_m=1.0)),
         ("outliers-30", Cell(sigma_px=1.0, angle_deg=90.0, model_sigma_m=1.0)),
     ],
     ids=lambda value: value if isinstance(value, str) else value.name,
 )
 def test_never_worse_than_the_baselines(data, cell):
     """Flight by flight, within the Monte Carlo error; the clean cells are where least is to be gained."""
-    scores = run_cell(cell, data, 25, ["epnp", "window", "map"])
+    scores = run_cell(cell, data, 16, ["epnp", "window", "map"])
     for key in ERRORS:
         assert paired(scores["map"], scores["epnp"], key).not_worse, key
         assert paired(scores["map"], scores["window"], key).not_worse, key
