@@ -41,7 +41,7 @@ struct Triangle {
 /// The three squared sides as quadratic forms of e = (scale d_1, d_2 - d_1, d_3 - d_1); entries of order one however
 /// far the triangle, when scale is the typical chord. docs/pnp.md eq. (2).
 std::array<Mat33, 3> side_forms(const Vec3& squared_chords, double scale) noexcept {
-    const Vec3 k = squared_chords;
+    const Vec3& k = squared_chords;
     std::array<Mat33, 3> forms;
     const double h = 0.5 / scale, u = 1.0 / (scale * scale);
     forms[0] << k[0] * u, k[0] * h, 0.0, k[0] * h, 1.0, 0.0, 0.0, 0.0, 0.0;

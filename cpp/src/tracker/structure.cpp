@@ -163,7 +163,7 @@ void Structure::spare_one() noexcept {
             view.state.T_camera_target =
                 perturb(view.state.T_camera_target, -(view.L_inverse.transpose() * (view.L_inverse * view.g)));
     }
-    if (usable) problem_.compressed->add(view, problem_.X);
+    if (usable && problem_.compressed) problem_.compressed->add(view, problem_.X);
     retire(index);
 }
 
