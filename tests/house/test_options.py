@@ -1,0 +1,31 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""An option lives once, in the C++ aggregate; Python mirrors name, type and default of each."""
+
+import dataclasses
+import re
+from pathlib import Path
+
+from fairlead import _core
+from fairlead.tracker import TrackerOptions
+
+FIELD = re.compile(r"^    (int|double|bool|std::uint64_t)\s+(\w+)\s*=\s", re.MULTILINE)
+PYTHON_TYPE = {"int": int, "double": float, "bool": bool, "std::uint64_t": int}
+
+
+def test_python_mirrors_every_option(repository: Path) -> None:
+    header = (repository / "cpp" / "include" / "fairlead" / "tracker" / "options.hpp").read_text(encoding="utf-8")
+    in_core = {name: PYTHON_TYPE[type_] for type_, name in FIELD.findall(header)}
+    assert len(in_core) > 3
+    assert {field.name: field.type for field in dataclasses.fields(TrackerOptions)} == in_core
+
+
+def test_defaults_are_those_of_the_core() -> None:
+    core, options = _core.TrackerOptions(), TrackerOptions()
+    assert {n: getattr(core, n) for n in dataclasses.asdict(options)} == dataclasses.asdict(options)
+
+
+def test_each_option_reaches_the_core() -> None:
+    changed = {name: value + 1 for name, value in dataclasses.asdict(TrackerOptions()).items()}
+    core = TrackerOptions(**changed).to_core()
+    assert {name: getattr(core, name) for name in changed} == changed
