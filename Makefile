@@ -62,9 +62,9 @@ stubs: setup
 .PHONY: lock
 lock:
 	uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header --python-version 3.11 \
-	    --group dev --output-file requirements/dev.txt pyproject.toml
+	    --group dev --output-file requirements/dev.txt pyproject.toml > /dev/null
 	echo 'opencv-python-headless>=4.10,<5' | uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header \
-	    --no-deps --python-version 3.11 --output-file requirements/opencv4.txt -
+	    --no-deps --python-version 3.11 --output-file requirements/opencv4.txt - > /dev/null
 
 ## bench    accuracy against the committed baseline, and time against Ceres, GTSAM and scipy
 .PHONY: bench
@@ -156,7 +156,7 @@ $(STAMPS)/compile-commands: $(STAMPS)/environment $(CMAKE_FILES)
 OPENCV_TESTS := tests/unit/test_opencv.py tests/unit/test_baselines.py tests/unit/detect tests/real/test_marker_pen_detection.py
 .PHONY: pytest-opencv4
 pytest-opencv4: setup $(STAMPS)/opencv4
-	PYTHONPATH=build/opencv4 $(BIN)/python -m pytest --numprocesses $(JOBS) --quiet $(OPENCV_TESTS)
+	PYTHONPATH=build/opencv4 $(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadgroup --quiet $(OPENCV_TESTS)
 $(STAMPS)/opencv4: $(STAMPS)/environment requirements/opencv4.txt
 	rm -rf build/opencv4
 	$(BIN)/python -m pip install --quiet --no-deps --require-hashes --target build/opencv4 --requirement requirements/opencv4.txt
@@ -164,4 +164,4 @@ $(STAMPS)/opencv4: $(STAMPS)/environment requirements/opencv4.txt
 
 .PHONY: pytest
 pytest: setup
-	$(BIN)/python -m pytest --numprocesses $(JOBS) --quiet
+	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadgroup --quiet

@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+# Tests that use build/python run one after the other.
+pytestmark = pytest.mark.xdist_group("build")
+
 EIGEN = Path(sysconfig.get_path("purelib")) / "cmeel.prefix"
 
 
