@@ -11,22 +11,37 @@ from typing import TYPE_CHECKING
 __version__: str
 
 if TYPE_CHECKING:
+    from fairlead.io.attitudes import read_attitudes, write_attitudes
     from fairlead.io.camera import load_camera, save_camera
     from fairlead.io.errors import InputError
     from fairlead.io.observations import read_views, write_views
     from fairlead.io.poses import read_poses, read_truth, write_poses, write_truth
+    from fairlead.io.ranges import read_ranges, write_ranges
     from fairlead.io.target import load_target, save_target
     from fairlead.io.tum import write_trajectory_tum
     from fairlead.tracker import Refinement, Tracker, TrackerOptions, refine
-    from fairlead.types import Camera, Estimate, KnownDistance, MotionPrior, PoseEstimator, Target, TruthPose, View
+    from fairlead.types import (
+        AttitudeReading,
+        Camera,
+        Estimate,
+        KnownDistance,
+        MotionPrior,
+        PoseEstimator,
+        RangeReading,
+        Target,
+        TruthPose,
+        View,
+    )
 
 __all__ = [
+    "AttitudeReading",
     "Camera",
     "Estimate",
     "InputError",
     "KnownDistance",
     "MotionPrior",
     "PoseEstimator",
+    "RangeReading",
     "Refinement",
     "Target",
     "Tracker",
@@ -36,28 +51,35 @@ __all__ = [
     "__version__",
     "load_camera",
     "load_target",
+    "read_attitudes",
     "read_poses",
+    "read_ranges",
     "read_truth",
     "read_views",
     "refine",
     "save_camera",
     "save_target",
+    "write_attitudes",
     "write_poses",
+    "write_ranges",
     "write_trajectory_tum",
     "write_truth",
     "write_views",
 ]
 
 _HOME = {
+    "fairlead.io.attitudes": ("read_attitudes", "write_attitudes"),
     "fairlead.io.camera": ("load_camera", "save_camera"),
     "fairlead.io.errors": ("InputError",),
     "fairlead.io.observations": ("read_views", "write_views"),
     "fairlead.io.poses": ("read_poses", "read_truth", "write_poses", "write_truth"),
+    "fairlead.io.ranges": ("read_ranges", "write_ranges"),
     "fairlead.io.target": ("load_target", "save_target"),
     "fairlead.io.tum": ("write_trajectory_tum",),
     "fairlead.tracker": ("Refinement", "Tracker", "TrackerOptions", "refine"),
     "fairlead.types": (
-        *("Camera", "Estimate", "KnownDistance", "MotionPrior", "PoseEstimator", "Target", "TruthPose", "View"),
+        *("AttitudeReading", "Camera", "Estimate", "KnownDistance", "MotionPrior", "PoseEstimator", "RangeReading"),
+        *("Target", "TruthPose", "View"),
     ),
 }
 _MODULE_OF = {name: module for module, names in _HOME.items() for name in names}

@@ -37,6 +37,10 @@ from fairlead.types.models import (
     MotionPrior,
     Target,
 )
+from fairlead.types.readings import (
+    AttitudeReading,
+    RangeReading,
+)
 from fairlead.types.views import (
     Estimate,
     PoseEstimator,
@@ -47,6 +51,7 @@ from fairlead.types.views import (
 __all__ = [
     "DISTORTION_SIZE",
     "RIGID_TOLERANCE",
+    "AttitudeReading",
     "Camera",
     "CameraModel",
     "Distortion",
@@ -63,6 +68,7 @@ __all__ = [
     "Points3",
     "PoseEstimator",
     "Poses",
+    "RangeReading",
     "Rays",
     "Scores",
     "Status",
