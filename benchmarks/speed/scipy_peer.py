@@ -88,7 +88,7 @@ class Scipy:
                 jac=lambda x: self._jacobian(x).toarray() if method == "lm" else self._jacobian(x),
                 method=method,
                 x_scale="jac",
-                ftol=settings.tolerance,
+                ftol=max(settings.tolerance, 1e-15),
                 xtol=1e-15,
                 gtol=1e-15,
                 max_nfev=settings.max_iterations,

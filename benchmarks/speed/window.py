@@ -69,6 +69,13 @@ class Timing:
         return statistics.median(self.seconds)
 
 
+def label(settings: Settings) -> str:
+    """Variant and first damping, as far as there is something to say."""
+    variant = "" if settings.variant == "-" else settings.variant.replace("/", ", ").lower()
+    damping = "" if settings in SCIPY else f"{settings.damping:.0e}"
+    return ", ".join(part for part in (variant, damping) if part)
+
+
 def fastest(solver: Solver, tried: tuple[Settings, ...]) -> tuple[Settings, dict[str, float]]:
     """The quickest of the variants, and the seconds of each."""
     seconds = {s: solver.solve(s, 0.0 if len(tried) == 1 else BURST_S)[0] for s in tried}
@@ -84,7 +91,7 @@ def race(
     for name, solver in solvers.items():
         solver.prepare(problem)
         chosen[name], tried[name] = fastest(solver, candidates(name, problem))
-        say(f"  {name}: {chosen[name].variant}, damping {chosen[name].damping:g}")
+        say(f"  {name}: {label(chosen[name])}")
     seconds: dict[str, list[float]] = {name: [] for name in solvers}
     iterations: dict[str, int] = {}
     for turn in range(rounds):
@@ -116,8 +123,7 @@ def row(size: tuple[int, int], timing: Timing, ours: Timing, best_cost: float) -
         "views": size[0],
         "landmarks": size[1],
         "solver": timing.name,
-        "variant": timing.settings.variant,
-        "damping": timing.settings.damping,
+        "variant": label(timing.settings),
         "iterations": timing.iterations,
         "ms": 1e3 * timing.median_s,
         "ms_per_iteration": 1e3 * timing.median_s / timing.iterations,

@@ -53,6 +53,8 @@ def unproject(camera: Camera, pixels: Pixels) -> Rays:
 
 def distortion_limit(camera: Camera) -> float:
     """Largest radius (tan theta; equidistant: theta [rad]) up to which the radial distortion grows; inf if always."""
+    if not camera.distortion.any():
+        return 0.5 * np.pi if camera.model == "equidistant" else np.inf
     if camera.model == "equidistant":
         odd = np.polynomial.Polynomial([0.0, 1.0, *np.ravel(np.column_stack([np.zeros(4), camera.distortion]))])
         return min(_first_root(odd.deriv()), 0.5 * np.pi)

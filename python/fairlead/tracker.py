@@ -130,7 +130,7 @@ class Tracker:
 
     @property
     def prior_factor(self) -> float:
-        """Estimated ratio of the true to the told model covariance [-], docs/estimator.md eq. (15)."""
+        """Estimated ratio of the true to the told model covariance [-], docs/estimator.md eq. (16)."""
         return self._core.prior_factor
 
 

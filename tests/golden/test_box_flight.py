@@ -14,7 +14,7 @@ from fairlead.io.poses import read_poses
 from tests.regression.conftest import make_flight
 
 FOLDER = Path(__file__).parent / "box_flight"
-TOLERANCE = 0.05
+TOLERANCE = 1e-6
 """Of poses [m, rad] and, relatively, of covariances: more than a compiler's freedom, less than any changed rule."""
 
 

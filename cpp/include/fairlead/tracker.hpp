@@ -28,7 +28,7 @@ class Tracker {
     Estimate update(std::int64_t stamp_ns, std::span<const Observation> observations) noexcept;
 
     [[nodiscard]] std::span<const Vec3> landmarks() const noexcept;  ///< current model [m]
-    [[nodiscard]] const MatX& landmark_covariance() const noexcept;  ///< 3N x 3N [m^2]
+    [[nodiscard]] MatX landmark_covariance() const;                  ///< 3N x 3N [m^2]
     [[nodiscard]] double noise_factor() const noexcept;              ///< of the told pixel covariances, estimated [-]
     [[nodiscard]] double prior_factor() const noexcept;              ///< of the told model covariance, estimated [-]
     [[nodiscard]] int views_in_window() const noexcept;

@@ -11,6 +11,7 @@
 #include "fairlead/tracker/sanitise.hpp"
 #include "fairlead/tracker/start_pose.hpp"
 #include "fairlead/window/covariance.hpp"
+#include "fairlead/window/gauge_curvature.hpp"
 #include "fairlead/window/levenberg_marquardt.hpp"
 
 namespace fairlead {
@@ -77,7 +78,8 @@ class Batch {
     TrackerOptions options_;
     window::Problem problem_;
     window::Workspace workspace_;
-    MatX Sigma_;
+    MatX Sigma_, H_data_;
+    VecX g_data_;
     std::vector<Mat33> blocks_;
     std::vector<Candidate> candidates_;
     std::vector<Observation> scratch_;
@@ -146,15 +148,18 @@ void Batch::graduate(double mu) {
         last_ = window::levenberg_marquardt(problem_, {.max_iterations = mu > 1.0 ? 6 : 50}, workspace_);
         iterations_ += last_.iterations;
         if (!last_.ok || !window::assemble_data(problem_, 0.0, workspace_)) return;
+        H_data_ = workspace_.S;
+        g_data_ = workspace_.g;
         window::scale_and_add_prior(problem_, problem_.X, workspace_);
         workspace_.llt.compute(workspace_.S);
-        window::structure_covariance(workspace_, Sigma_);
+        const double determined = window::structure_covariance(problem_, workspace_, Sigma_);
         update_blocks();
         const double noise = problem_.noise_factor;
-        const double prior = problem_.prior_factor;
-        window::update_factors(problem_, Sigma_);
-        const double change =
-            std::max(std::abs(problem_.noise_factor / noise - 1.0), std::abs(problem_.prior_factor / prior - 1.0));
+        const double prior = problem_.prior_factors.believed;
+        window::update_noise_factor(problem_, determined);
+        if (mu == 1.0) window::update_prior_factors(problem_, H_data_, g_data_, problem_.X, workspace_);
+        const double change = std::max(std::abs(problem_.noise_factor / noise - 1.0),
+                                       std::abs(problem_.prior_factors.believed / prior - 1.0));
         if (mu == 1.0 && change < kFactorChange) return;
         mu = std::max(1.0, 0.25 * mu);
     }
@@ -204,7 +209,8 @@ Estimate Batch::estimate(const Candidate& candidate) {
     MatX Yt(Sigma_.rows(), window::ViewState::kDim);
     MatX SigmaYt = Yt;
     e.status = Status::tracking;
-    e.reason = std::max(problem_.noise_factor, problem_.prior_factor) > kAlarmFactor ? Reason::alarm : Reason::none;
+    e.reason =
+        std::max(problem_.noise_factor, problem_.prior_factors.likely) > kAlarmFactor ? Reason::alarm : Reason::none;
     e.T_camera_target = view.state.T_camera_target;
     e.covariance = window::state_covariance(view, problem_.X, Sigma_, problem_.noise_factor, Yt, SigmaYt);
     double squares = 0.0;
@@ -225,8 +231,9 @@ Refinement Batch::result() {
     for (const Candidate& candidate : candidates_) refinement.estimates.push_back(estimate(candidate));
     refinement.X = problem_.X;
     refinement.covariance = Sigma_;
+    if (last_.ok) window::add_gauge_curvature(problem_.X, refinement.covariance);
     refinement.noise_factor = problem_.noise_factor;
-    refinement.prior_factor = problem_.prior_factor;
+    refinement.prior_factor = problem_.prior_factors.likely;
     refinement.cost = last_.cost;
     refinement.iterations = iterations_;
     refinement.converged = last_.converged;

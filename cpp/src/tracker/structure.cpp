@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fairlead/window/gauge_curvature.hpp"
 #include "fairlead/window/keyframes.hpp"
 
 namespace fairlead {
@@ -143,8 +144,21 @@ bool Structure::relinearise(double widest) noexcept {
     return workspace_.llt.info() == Eigen::Success;
 }
 
+MatX Structure::covariance() const {
+    MatX Sigma = Sigma_;
+    if (fused_ > 0) window::add_gauge_curvature(problem_.X, Sigma);
+    return Sigma;
+}
+
+/// The factors of the prior, ever more rarely: the data say the less news of them the more there are.
+void Structure::judge_prior() noexcept {
+    if (++fused_ < next_judgement_) return;
+    next_judgement_ = fused_ + 1 + fused_ / 4;
+    window::update_prior_factors(problem_, H_data_, g_data_, X_data_, workspace_);
+}
+
 void Structure::publish() noexcept {
-    window::structure_covariance(workspace_, Sigma_);
+    determined_ = window::structure_covariance(problem_, workspace_, Sigma_);
     for (std::size_t j = 0; j < blocks_.size(); ++j) {
         const Eigen::Index row = 3 * static_cast<Eigen::Index>(j);
         blocks_[j] = Sigma_.block<3, 3>(row, row);
@@ -203,7 +217,8 @@ Fusion Structure::fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<cons
     const double log_det = workspace_.llt.matrixLLT().diagonal().array().log().sum();
     fusion.information_gained = std::max(0.0, log_det - log_det_);
     log_det_ = log_det;
-    window::update_factors(problem_, Sigma_);
+    window::update_noise_factor(problem_, determined_);
+    judge_prior();
     if (problem_.views.size() > max_views_) spare_one();
     fusion.ok = fusion.covariance.allFinite() && fusion.T_camera_target.t.allFinite();
     return fusion;

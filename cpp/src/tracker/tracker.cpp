@@ -228,7 +228,7 @@ Estimate Tracker::update(std::int64_t stamp_ns, std::span<const Observation> obs
 }
 
 std::span<const Vec3> Tracker::landmarks() const noexcept { return state_->structure.landmarks(); }
-const MatX& Tracker::landmark_covariance() const noexcept { return state_->structure.covariance(); }
+MatX Tracker::landmark_covariance() const { return state_->structure.covariance(); }
 double Tracker::noise_factor() const noexcept { return state_->structure.noise_factor(); }
 double Tracker::prior_factor() const noexcept { return state_->structure.prior_factor(); }
 int Tracker::views_in_window() const noexcept { return state_->structure.views(); }

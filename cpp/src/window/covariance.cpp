@@ -16,7 +16,7 @@ double exponential_integral(double x) noexcept {
 }
 
 /// E[w s] / E[2 w] for Gaussian errors: what the robust loss takes from a variance estimate, docs/estimator.md eq.
-/// (16).
+/// (15).
 double gaussian_consistency(double a) noexcept {
     if (!(a < 100.0)) return 1.0;
     const double tail = std::exp(-0.5 * a);
@@ -28,9 +28,20 @@ double gaussian_consistency(double a) noexcept {
 
 }  // namespace
 
-void structure_covariance(const Workspace& workspace, MatX& Sigma) noexcept {
+double structure_covariance(const Problem& problem, Workspace& workspace, MatX& Sigma) noexcept {
     Sigma.setIdentity();
     workspace.llt.solveInPlace(Sigma);
+    const double parameters = 3.0 * problem.landmarks();
+    if (!problem.prior) return parameters;
+    const auto [believed, likely] = problem.prior_factors;
+    workspace.product.noalias() = problem.prior->information * Sigma;
+    const double determined = std::clamp(parameters - workspace.product.trace() / believed, 0.0, parameters);
+    if (likely > believed) {
+        const double excess = (likely - believed) / (believed * believed);
+        workspace.S = Sigma;  // its lower triangle is in llt already
+        Sigma.noalias() += excess * workspace.S * workspace.product;
+    }
+    return determined;
 }
 
 StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma,
@@ -48,19 +59,7 @@ StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_targ
     return 0.5 * (covariance + covariance.transpose());
 }
 
-void update_factors(Problem& problem, const MatX& Sigma) noexcept {
-    const double parameters = 3.0 * problem.landmarks();
-    double determined = parameters;  // of the structure, by the data
-    if (problem.prior) {
-        const MatX& information = problem.prior->information;
-        determined -= information.cwiseProduct(Sigma).sum() / problem.prior_factor;
-        determined = std::clamp(determined, 0.0, parameters);
-        const Eigen::Map<const VecX> x(problem.X.front().data(), 3 * problem.landmarks());
-        double squares = 0.0;
-        for (Eigen::Index c = 0; c < x.size(); ++c)
-            squares += (x[c] - problem.prior->mean[c]) * information.col(c).dot(x - problem.prior->mean);
-        problem.prior_factor = (kPriorBelief + squares) / (kPriorBelief + determined);
-    }
+void update_noise_factor(Problem& problem, double determined) noexcept {
     double squares = 0.0;
     double freedom = -determined;
     for (const ViewBlock& view : problem.views) {
@@ -73,6 +72,19 @@ void update_factors(Problem& problem, const MatX& Sigma) noexcept {
     }
     squares = std::max(squares, 0.0) / gaussian_consistency(problem.loss.threshold);
     problem.noise_factor = (kNoiseBelief + squares) / (kNoiseBelief + std::max(freedom, 0.0));
+}
+
+void update_prior_factors(Problem& problem, const MatX& H, const VecX& g, std::span<const Vec3> X,
+                          Workspace& workspace) noexcept {
+    if (!problem.prior) return;
+    const Eigen::Map<const VecX> x(X.front().data(), 3 * problem.landmarks());
+    const double scale = 1.0 / problem.noise_factor;
+    workspace.step = problem.prior->mean - x;
+    workspace.D = -g;
+    workspace.D.noalias() -= H.selfadjointView<Eigen::Lower>() * workspace.step;
+    workspace.D *= scale;
+    workspace.product = scale * H;
+    problem.prior_factors = workspace.evidence.evaluate(*problem.prior, workspace.product, workspace.D);
 }
 
 }  // namespace fairlead::window

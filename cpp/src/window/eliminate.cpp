@@ -3,15 +3,12 @@
 #include "fairlead/window/eliminate.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 
 namespace fairlead::window {
 namespace {
 
 constexpr int kDim = ViewState::kDim;
-// Views per rank update: as many as keep the product's packed operands within Eigen's stack limit, so that nothing is
-// allocated.
-int chunk_views(int landmarks) { return std::clamp(10000 / (3 * landmarks * kDim), 1, 16); }
+constexpr int kViews = 16;  // per rank update
 
 }  // namespace
 
@@ -42,7 +39,7 @@ StateVector back_substitute(const ViewBlock& view, std::span<const Vec3> X_targe
     return -(view.L_inverse.transpose() * (view.L_inverse * rhs));
 }
 
-Eliminator::Eliminator(int landmarks) : Yt_(3 * landmarks, kDim * chunk_views(landmarks)) { Yt_.setZero(); }
+Eliminator::Eliminator(int landmarks) : Y_(3 * landmarks, kDim * kViews) {}
 
 void Eliminator::add(const ViewBlock& view, std::span<const Vec3> X_target, MatX& S, VecX& g) noexcept {
     const StateVector y = view.L_inverse * view.g;
@@ -50,19 +47,15 @@ void Eliminator::add(const ViewBlock& view, std::span<const Vec3> X_target, MatX
         const int j = view.measurements[i].landmark;
         const PointTerm& term = view.terms[i];
         const StateByPoint rows = reduced_rows(view, term, X_target[static_cast<std::size_t>(j)]);
-        Yt_.block<3, kDim>(3 * j, filled_) = rows;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < kDim; ++c) Y_.at(3 * j + r, c) = rows(r, c);
         S.block<3, 3>(3 * j, 3 * j) += term.M;
         g.segment<3>(3 * j) += term.v - rows * y;
     }
-    filled_ += kDim;
-    if (filled_ == Yt_.cols()) flush(S);
+    Y_.take(kDim);
+    if (Y_.room() < kDim) flush(S);
 }
 
-void Eliminator::flush(MatX& S) noexcept {
-    if (filled_ == 0) return;
-    S.selfadjointView<Eigen::Lower>().rankUpdate(Yt_.leftCols(filled_), -1.0);
-    Yt_.leftCols(filled_).setZero();
-    filled_ = 0;
-}
+void Eliminator::flush(MatX& S) noexcept { Y_.subtract_from(S); }
 
 }  // namespace fairlead::window

@@ -12,7 +12,11 @@ Eigen::Map<const VecX> stacked(std::span<const Vec3> X) {
 }  // namespace
 
 Workspace::Workspace(int landmarks)
-    : eliminator(landmarks), llt(3 * landmarks), X_trial(static_cast<std::size_t>(landmarks), Vec3::Zero()) {
+    : eliminator(landmarks),
+      llt(3 * landmarks),
+      evidence(landmarks),
+      X_trial(static_cast<std::size_t>(landmarks), Vec3::Zero()) {
+    product.setZero(3 * landmarks, 3 * landmarks);
     S.setZero(3 * landmarks, 3 * landmarks);
     for (VecX* vector : {&g, &dX, &D, &step}) vector->setZero(3 * landmarks);
 }
@@ -29,7 +33,7 @@ double posterior_cost(Problem& problem, std::span<const Vec3> X, std::span<const
         const auto& mean = problem.prior->mean;
         for (Eigen::Index c = 0; c < x.size(); ++c) prior += (x[c] - mean[c]) * information.col(c).dot(x - mean);
     }
-    return 0.5 * (data / problem.noise_factor + prior / problem.prior_factor);
+    return 0.5 * (data / problem.noise_factor + prior / problem.prior_factors.believed);
 }
 
 bool linearise(Problem& problem) noexcept {
@@ -65,7 +69,7 @@ void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Worksp
     workspace.g *= data_scale;
     workspace.D *= data_scale;
     if (!problem.prior) return;
-    const double scale = 1.0 / problem.prior_factor;
+    const double scale = 1.0 / problem.prior_factors.believed;
     workspace.S += scale * problem.prior->information;
     workspace.D += scale * problem.prior->information.diagonal();
     workspace.step = scale * (stacked(X) - problem.prior->mean);

@@ -123,12 +123,19 @@ def nees(samples: Sequence[NormalisedSquare | None]) -> Nees | None:
 
 
 def pose_difference(T_estimated: Matrix4, T_true: Matrix4) -> Vector6:
-    """xi with T_true = T_est Exp(xi), target axes [m, rad]: the error that the covariance speaks of."""
-    return geometry.difference(T_estimated, T_true)
+    """The error that the covariance speaks of, target axes [m, rad]: e = (R_est^T (t_true - t_est), Log(R_est^T R_true)).
+
+    To first order the xi of T_true = T_est Exp(xi), without the exact logarithm's product of rotation and range error, which
+    would be taken for an error across the line of sight, docs/bound.md eq. (15).
+    """
+    R = T_estimated[:3, :3]
+    rotation = np.eye(4)
+    rotation[:3, :3] = R.T @ T_true[:3, :3]
+    return np.concatenate([R.T @ (T_true[:3, 3] - T_estimated[:3, 3]), geometry.log_se3(rotation)[3:]])
 
 
 def pose_normalised_square(T_estimated: Matrix4, T_true: Matrix4, covariance: Matrix6) -> NormalisedSquare:
-    """xi^T P^+ xi of one pose, docs/metrics.md eq. (18)."""
+    """e^T P^+ e of one pose, docs/metrics.md eq. (18)."""
     return normalised_square(pose_difference(T_estimated, T_true), covariance)
 
 

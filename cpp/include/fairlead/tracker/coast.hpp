@@ -12,7 +12,7 @@ namespace fairlead {
 /// Where the target may be while no view fixes its pose: the last pose, with a covariance that grows as the pose has
 /// been seen to move,
 ///   Sigma(t) = Sigma_last + E[v v^T] (t - t_last)^2,  v the pose's mean rate over intervals of at least half a second.
-///   docs/estimator.md eq. (18).
+///   docs/estimator.md eq. (20).
 class Coast {
   public:
     void restart(std::int64_t stamp_ns, const SE3& T, const Mat66& covariance) noexcept;

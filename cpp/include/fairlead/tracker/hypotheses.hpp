@@ -10,7 +10,7 @@
 namespace fairlead {
 
 /// Two poses that explain the views about equally well (flat or distant targets), followed until the data decide.
-/// docs/estimator.md eq. (19).
+/// docs/estimator.md eq. (21).
 class Hypotheses {
   public:
     [[nodiscard]] bool active() const noexcept { return active_; }

@@ -19,7 +19,7 @@ struct UncertainModel {
 };
 
 /// Observations with the model's error added to the noise: S = f S_j + B Sigma_j B^T, B = d pi / d X at T,
-/// docs/estimator.md eq. (17).
+/// docs/estimator.md eq. (18).
 void inflate(const Camera& camera, const UncertainModel& model, const SE3& T_camera_target, double noise_factor,
              std::span<const Observation> observations, std::vector<Observation>& out) noexcept;
 

@@ -34,9 +34,10 @@ class Structure {
 
     [[nodiscard]] std::span<const Vec3> landmarks() const noexcept { return problem_.X; }
     [[nodiscard]] std::span<const Mat33> landmark_covariances() const noexcept { return blocks_; }
-    [[nodiscard]] const MatX& covariance() const noexcept { return Sigma_; }
+    /// What is reported of the model: the covariance with the curvature of its gauge.
+    [[nodiscard]] MatX covariance() const;
     [[nodiscard]] double noise_factor() const noexcept { return problem_.noise_factor; }
-    [[nodiscard]] double prior_factor() const noexcept { return problem_.prior_factor; }
+    [[nodiscard]] double prior_factor() const noexcept { return problem_.prior_factors.likely; }
     [[nodiscard]] int views() const noexcept { return static_cast<int>(problem_.views.size()); }
 
   private:
@@ -48,6 +49,7 @@ class Structure {
     void retire(std::size_t index) noexcept;
     double nonlinearity() noexcept;
     void publish() noexcept;
+    void judge_prior() noexcept;
 
     window::Problem problem_;
     window::Workspace workspace_;
@@ -66,6 +68,8 @@ class Structure {
     std::vector<Mat33> blocks_;
     std::vector<double> squares_;
     double log_det_ = 0.0;
+    double determined_ = 0.0;
+    int fused_ = 0, next_judgement_ = 1;
     std::size_t max_views_;
 };
 

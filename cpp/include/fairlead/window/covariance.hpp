@@ -6,21 +6,25 @@
 
 namespace fairlead::window {
 
-/// Sigma_X = S^-1, the covariance of all landmarks with every view's state integrated out; workspace.llt must hold S
-/// undamped.
-void structure_covariance(const Workspace& workspace, MatX& Sigma) noexcept;
+/// Covariance of all landmarks with every view's state integrated out, for a prior that was believed with one factor
+/// and is likely to have another, docs/estimator.md eq. (17); workspace.llt must hold S undamped. Returns the number of
+/// directions of the model that the data determine, eq. (14).
+double structure_covariance(const Problem& problem, Workspace& workspace, MatX& Sigma) noexcept;
 
 /// Covariance of a view's xi with the structure's uncertainty in it, docs/estimator.md eq. (10):
 ///   f L^-T L^-1 + L^-T Y Sigma_X Y^T L^-1.  Y is scratch (6 x 3N transposed).
 [[nodiscard]] StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma,
                                            double noise_factor, MatX& Yt, MatX& SigmaYt) noexcept;
 
-/// Variance components (Foerstner 1979; MacKay 1992 eq. (2.24)): how far the told noise and the told prior were off,
-/// each pulled towards 1 with the weight of kNoiseBelief and kPriorBelief degrees of freedom, docs/estimator.md eq.
-/// (14)-(15).
-void update_factors(Problem& problem, const MatX& Sigma) noexcept;
+/// Variance component of the told noise (Foerstner 1979), pulled towards 1 with the weight of kNoiseBelief degrees of
+/// freedom, docs/estimator.md eq. (14); `determined` directions of the model are taken off.
+void update_noise_factor(Problem& problem, double determined) noexcept;
+
+/// How far the told prior is off: PriorEvidence at the data's quadratic H, g about X (told units), docs/estimator.md
+/// eq. (16).
+void update_prior_factors(Problem& problem, const MatX& H, const VecX& g, std::span<const Vec3> X,
+                          Workspace& workspace) noexcept;
 
 inline constexpr double kNoiseBelief = 20.0;
-inline constexpr double kPriorBelief = 10.0;
 
 }  // namespace fairlead::window

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "fairlead/dense/rank_update.hpp"
 #include "fairlead/window/state.hpp"
 
 namespace fairlead::window {
@@ -28,8 +29,7 @@ class Eliminator {
     void flush(MatX& S) noexcept;
 
   private:
-    MatX Yt_;
-    int filled_ = 0;
+    dense::RankUpdate Y_;
 };
 
 }  // namespace fairlead::window

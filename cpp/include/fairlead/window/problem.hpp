@@ -9,22 +9,22 @@
 #include "fairlead/robust/loss.hpp"
 #include "fairlead/window/compressed_views.hpp"
 #include "fairlead/window/eliminate.hpp"
-#include "fairlead/window/landmark_prior.hpp"
 #include "fairlead/window/linearise.hpp"
+#include "fairlead/window/prior_evidence.hpp"
 
 namespace fairlead::window {
 
 /// The negative log posterior of landmarks X and view states T_k, docs/estimator.md eq. (1) and (3):
-///   E = 1/2 [ (sum_k sum_j rho(s_kj) + compressed views) / noise_factor + (X - X0)^T P0^-1 (X - X0) / prior_factor ].
+///   E = 1/2 [ (sum_k sum_j rho(s_kj) + compressed views) / noise_factor + (X - X0)^T P0^-1 (X - X0) / believed ].
 struct Problem {
     Camera camera;
     std::optional<LandmarkPrior> prior;
     std::optional<CompressedViews> compressed;
     std::vector<Vec3> X;  ///< landmarks, target frame [m]
     std::vector<ViewBlock> views;
-    double noise_factor = 1.0;  ///< multiplies every told covariance
-    double prior_factor = 1.0;  ///< multiplies P0
-    Loss loss;                  ///< threshold in units of the estimated noise
+    double noise_factor = 1.0;   ///< multiplies every told covariance
+    PriorFactors prior_factors;  ///< of P0; `believed` multiplies it in E
+    Loss loss;                   ///< threshold in units of the estimated noise
 
     [[nodiscard]] int landmarks() const noexcept { return static_cast<int>(X.size()); }
     /// The loss in told units: rho_f(s) = f rho(s / f).
@@ -39,6 +39,8 @@ struct Workspace {
     MatX S;  ///< 3N x 3N, lower triangle
     VecX g, dX, D, step;
     Eigen::LLT<MatX> llt;
+    MatX product;  ///< scratch
+    PriorEvidence evidence;
     std::vector<Vec3> X_trial;
     std::vector<StateVector> dT;
     std::vector<SE3> T_trial;
