@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 from tyro.conf import subcommand
 
-from fairlead.config import Config, DemoConfig, EvaluateConfig, RefineConfig, TrackConfig, UsageError
+from fairlead.config import Config, DemoConfig, EvaluateConfig, RefineConfig, SimulateConfig, TrackConfig, UsageError
 from fairlead.io.errors import InputError, one_line
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ _Command = (
     | Annotated[TrackConfig, subcommand("track")]
     | Annotated[RefineConfig, subcommand("refine")]
     | Annotated[EvaluateConfig, subcommand("evaluate")]
+    | Annotated[SimulateConfig, subcommand("simulate")]
 )
 
 
@@ -81,6 +82,8 @@ def _complain(message: str, status: int) -> int:
 
 
 def _run(config: Config) -> int:
+    if isinstance(config, SimulateConfig):
+        return _simulate(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -99,6 +102,19 @@ def _run(config: Config) -> int:
     sys.stdout.write(f"{verb.output}: {counts}\n")
     if verb.coverage < config.min_coverage:
         return _complain(f"coverage {verb.coverage:.1%} is below --min-coverage {config.min_coverage:.1%}", 1)
+    return 0
+
+
+def _simulate(config: SimulateConfig) -> int:
+    from fairlead.simulate.folder import write_simulation
+    from fairlead.simulate.scenario_file import load_scenario
+
+    source = load_scenario(config.scenario, target=config.target, camera=config.camera)
+    written = write_simulation(source, config.output, seed=config.seed)
+    counts = f"{written.images} images, {written.observations} observations"
+    if written.ranges or written.attitudes:
+        counts += f", {written.ranges} ranges, {written.attitudes} attitudes"
+    sys.stdout.write(f"{written.output}: {counts}\n")
     return 0
 
 

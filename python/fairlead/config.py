@@ -82,4 +82,24 @@ class DemoConfig:
     """Folder for the results."""
 
 
-Config = TrackConfig | RefineConfig | EvaluateConfig | DemoConfig
+@dataclass(frozen=True, kw_only=True)
+class SimulateConfig:
+    """Draw a flight: what an estimator is told, and apart from it the truth."""
+
+    scenario: Positional[str]
+    """scenario.toml, or the name of one that comes along: arc, flight-30s, rolling-ship-5, landing, rough, ..."""
+    output: Annotated[Path, arg(aliases=["-o"])]
+    """Folder for the files; those of an earlier flight in it are replaced."""
+    seed: int | None = None
+    """Instead of the scenario's: another flight of the same kind."""
+    target: Path | None = None
+    """target.toml instead of the scenario's."""
+    camera: Path | None = None
+    """Calibration instead of the scenario's."""
+
+    def __post_init__(self) -> None:
+        if self.seed is not None and self.seed < 0:
+            raise UsageError(f"--seed: expected a whole number >= 0, got {self.seed}")
+
+
+Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | DemoConfig

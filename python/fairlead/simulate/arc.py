@@ -7,14 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fairlead.simulate.errors import ModelError, ObservationError
-from fairlead.simulate.trajectory import arc_centres, look_at
+from fairlead.simulate.trajectory import arc_centres, box_centre, look_at
 from fairlead.simulate.truth import Simulation, known_exactly, project_all, roughly_known
-from fairlead.types import Camera, Points3, Poses, Target, Vector3, View
-
-
-def box_centre(X: Points3) -> Vector3:
-    """Middle of the axis-parallel box of the landmarks [m]: what the camera looks at."""
-    return 0.5 * (X.min(axis=0) + X.max(axis=0))
+from fairlead.types import Camera, Points3, Poses, Target, View
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fairlead.simulate.arc import box_centre
 from fairlead.simulate.errors import ModelError, ObservationError
-from fairlead.simulate.trajectory import arc_centres, look_at
+from fairlead.simulate.trajectory import arc_centres, box_centre, look_at
 from fairlead.simulate.truth import project_all, roughly_known
 from fairlead.types import Camera, Points3, Poses, Target, View
 

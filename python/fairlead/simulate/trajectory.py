@@ -7,6 +7,11 @@ import numpy as np
 from fairlead.types import Points3, Poses, Vector3
 
 
+def box_centre(X: Points3) -> Vector3:
+    """Middle of the axis-parallel box of the landmarks [m]: what the camera looks at."""
+    return 0.5 * (X.min(axis=0) + X.max(axis=0))
+
+
 def arc_centres(azimuths_rad: np.ndarray, range_m: float, elevation_rad: float) -> Points3:
     """c = r (cos e cos a, cos e sin a, sin e): camera positions on a circle about the target's vertical axis.
 

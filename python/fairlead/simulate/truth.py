@@ -7,7 +7,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fairlead import geometry
-from fairlead.types import Camera, ModelCovariance, Points3, Poses, Target, TruthPose, View
+from fairlead.types import (
+    AttitudeReading,
+    Camera,
+    ModelCovariance,
+    Points3,
+    Poses,
+    RangeReading,
+    Target,
+    TruthPose,
+    View,
+)
 
 
 def project_all(camera: Camera, X: Points3, T_camera_target: Poses) -> np.ndarray:
@@ -18,7 +28,7 @@ def project_all(camera: Camera, X: Points3, T_camera_target: Poses) -> np.ndarra
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Simulation:
-    """Truth (`target_true`, `T_true`) and what is told (`target_told`, `views`). An estimator gets the latter only."""
+    """Truth (`target_true`, `T_true`) and what is told (all others). An estimator gets the latter only."""
 
     camera: Camera
     target_told: Target
@@ -28,6 +38,10 @@ class Simulation:
     """The true landmarks, without uncertainty."""
     T_true: Poses
     """(k, 4, 4) T_camera_target, order as in `views`."""
+    ranges: tuple[RangeReading, ...] = ()
+    """In order of time."""
+    attitudes: tuple[AttitudeReading, ...] = ()
+    """In order of time."""
 
     @property
     def X_true(self) -> Points3:
@@ -41,6 +55,19 @@ class Simulation:
             TruthPose(frame=view.frame, stamp_ns=view.stamp_ns, T_camera_target=T)
             for view, T in zip(self.views, self.T_true, strict=True)
         )
+
+    @property
+    def views_true(self) -> tuple[View, ...]:
+        """Where the landmarks really are in each image, hidden ones too, without error; those outside are left out."""
+        pixels = project_all(self.camera, self.X_true, self.T_true)
+        views: list[View] = []
+        for view, z in zip(self.views, pixels, strict=True):
+            with np.errstate(invalid="ignore"):
+                inside = ((z >= -0.5) & (z <= np.array([self.camera.width, self.camera.height]) - 0.5)).all(axis=1)
+            names = tuple(name for name, keep in zip(self.target_true.landmarks, inside, strict=True) if keep)
+            covariances = np.zeros((len(names), 2, 2))
+            views.append(replace(view, landmarks=names, pixels=z[inside], covariances=covariances, scores=None))
+        return tuple(views)
 
 
 def known_exactly(target: Target) -> Target:
