@@ -83,7 +83,7 @@ class Noise:
         return X + self.bias_m * streams.of("bias_m").standard_normal(X.shape) if self.bias_m > 0.0 else X
 
 
-def remember(errors: Offsets, alike: Times) -> None:
+def remember(errors: Offsets, alike: Float64[np.ndarray, "intervals"]) -> None:
     """In place: e_k = a_k e_k-1 + sqrt(1 - a_k^2) w_k, so that the variance stays 1; eq. (20)."""
     fresh = np.sqrt(1.0 - alike**2)
     for k in range(1, len(errors)):

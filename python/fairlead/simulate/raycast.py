@@ -11,37 +11,66 @@ from jaxtyping import Bool, Float64
 from fairlead.types import Points3, Vector3
 
 Triangles = Float64[np.ndarray, "m 3 3"]
-CHUNK = 2_000_000
-"""Rays times triangles that are tried at once: about 100 MB."""
+CHUNK = 64
+"""Rays of neighbouring cameras that are tried at once."""
 MAX_TRIANGLES = 500_000
 
 
 def hidden(triangles: Triangles, point: Vector3, centres: Points3, tolerance_m: float) -> Bool[np.ndarray, "k"]:
     """Whether a triangle crosses the segment from `point` to each centre further than tolerance_m from `point`.
 
-    Both sides of a triangle hide; a triangle that holds `point` or lies along the ray does not. With o = point,
-    d = centre - o, v, a, b = vertex and edges, s = o - v, the ray o + t d meets the triangle where
+    Both sides of a triangle hide; one that holds `point` or lies along the ray does not. Centres that follow one
+    another are tried together, against the triangles that touch the cone about them.
+    """
+    middles = triangles.mean(axis=1) - point
+    radii = np.linalg.norm(triangles - triangles.mean(axis=1, keepdims=True), axis=2).max(axis=1)
+    distances = np.maximum(np.linalg.norm(middles, axis=1), 1e-300)
+    spread = np.where(radii < distances, np.arcsin(np.minimum(radii / distances, 1.0)), np.pi)
+    answer = np.zeros(len(centres), dtype=np.bool_)
+    for start in range(0, len(centres), CHUNK):
+        d = centres[start : start + CHUNK] - point
+        unit = d / np.maximum(np.linalg.norm(d, axis=1, keepdims=True), 1e-300)
+        axis = unit.mean(axis=0)
+        axis /= max(float(np.linalg.norm(axis)), 1e-300)
+        cone = np.arccos(np.clip(unit @ axis, -1.0, 1.0)).max()
+        off = np.arccos(np.clip(middles @ axis / distances, -1.0, 1.0))
+        answer[start : start + CHUNK] = _crossed(triangles[off <= cone + spread + 1e-6], point, d, tolerance_m)
+    return answer
+
+
+def _crossed(
+    triangles: Triangles, point: Vector3, d: Float64[np.ndarray, "rays 3"], tolerance_m: float
+) -> Bool[np.ndarray, "rays"]:
+    """All rays against all triangles. With v, a, b = vertex and edges, s = point - v, the ray point + t d meets it at
 
         t = b.q / det, u = d.(b x s) / det, w = d.q / det;  q = s x a, det = d.(b x a)
 
-    and u, w, u + w lie in 0..1 (Moeller and Trumbore 1997, with the products that do not hold d taken out of the loop).
+    where u, w, u + w lie in 0..1 (Moeller and Trumbore 1997, what does not hold d taken out of the loop).
     """
     v, a, b = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     s = point - v
     q, normals, across = np.cross(s, a), np.cross(b, a), np.cross(b, s)
-    height = np.einsum("mi,mi->m", b, q)
-    answer = np.zeros(len(centres), dtype=np.bool_)
-    rows = max(1, CHUNK // max(1, len(triangles)))
-    for start in range(0, len(centres), rows):
-        d = centres[start : start + rows] - point
-        with np.errstate(divide="ignore", invalid="ignore"):
-            inverse = 1.0 / (d @ normals.T)
-            t = height * inverse
-            u, w = (d @ across.T) * inverse, (d @ q.T) * inverse
-            near = tolerance_m / np.linalg.norm(d, axis=1, keepdims=True)
-            hit = (u >= 0.0) & (w >= 0.0) & (u + w <= 1.0) & (t > near) & (t < 1.0)
-        answer[start : start + rows] = hit.any(axis=1)
-    return answer
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = 1.0 / (d @ normals.T)
+        t = np.einsum("mi,mi->m", b, q) * inverse
+        u, w = (d @ across.T) * inverse, (d @ q.T) * inverse
+        near = tolerance_m / np.linalg.norm(d, axis=1, keepdims=True)
+        hit = (u >= 0.0) & (w >= 0.0) & (u + w <= 1.0) & (t > near) & (t < 1.0)
+    return hit.any(axis=1)
+
+
+@lru_cache(maxsize=16)
+def visible_from(mesh: Path, tolerance_m: float, points: bytes, centres: bytes) -> Bool[np.ndarray, "k n"]:
+    """Whether each of the points is in sight from each of the centres; both as bytes of float64, rows of three.
+
+    Runs of a study often share both: the last sixteen answers are kept. Raises ValueError for a mesh that is none.
+    """
+    triangles = load_triangles(mesh)
+    eyes = np.frombuffer(centres).reshape(-1, 3)
+    columns = [~hidden(triangles, X, eyes, tolerance_m) for X in np.frombuffer(points).reshape(-1, 3)]
+    seen = np.stack(columns, axis=1)
+    seen.setflags(write=False)
+    return seen
 
 
 @lru_cache(maxsize=4)

@@ -51,6 +51,7 @@ class Scenario:
 
     def __post_init__(self) -> None:
         target = self.target
+        expect("seed", self.seed, "a whole number >= 0", when=self.seed >= 0)
         checks: list[tuple[str, Callable[[], object]]] = [
             ("pointing", lambda: self.pointing.point(target)),
             ("target_motion", lambda: self.target_motion.point(target)),

@@ -88,12 +88,12 @@ def _named_file(top: Fields, key: str, file: str, path: Path) -> Path:
     name = top.text(key)
     if not _NAME.fullmatch(name):
         return resolve_inside(path.parent, name, path)
-    try:
-        return shipped_data(name) / file
-    except FileNotFoundError:
-        known = [each.parent.name for each in shipped_data("scenarios").parent.glob(f"*/{file}")]
-        words = f"expected the name of a file or of data that come along, got {name!r}; {nearest(name, known)}"
-        raise top.error(key, words) from None
+    known = {each.parent.name: each for each in shipped_data("scenarios").parent.glob(f"*/{file}")}
+    if name not in known:
+        raise top.error(
+            key, f"expected a file or the name of data that come along, got {name!r}; {nearest(name, known)}"
+        )
+    return known[name]
 
 
 def _trajectory(table: object, path: Path) -> FlightPath:

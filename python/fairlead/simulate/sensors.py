@@ -5,6 +5,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float64
 
 from fairlead.simulate.frames import instants, nanoseconds
 from fairlead.simulate.limits import expect, expect_at_least_zero, expect_positive, expect_share
@@ -13,7 +14,7 @@ from fairlead.simulate.streams import Streams
 from fairlead.types import AttitudeReading, Points3, RangeReading
 
 
-def reading_times(rate_hz: float | None, exposed_s: Times, length_s: float) -> Times:
+def reading_times(rate_hz: float | None, exposed_s: Times, length_s: float) -> Float64[np.ndarray, "readings"]:
     """With each image, lost ones too, or at a rate of its own [s]."""
     return exposed_s if rate_hz is None else instants(rate_hz, length_s)
 

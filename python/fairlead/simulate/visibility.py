@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float64
 
 from fairlead.simulate.limits import expect, expect_at_least_zero, expect_share
 from fairlead.simulate.outages import draw_outages
-from fairlead.simulate.raycast import hidden, load_triangles
+from fairlead.simulate.raycast import visible_from
 from fairlead.simulate.rotations import Times
 from fairlead.simulate.streams import Streams
 from fairlead.types import Camera, Points3, Target
@@ -27,13 +27,14 @@ class Occlusion:
 
     kind: Literal["none", "mesh", "normals"] = "none"
     """mesh: the target's surface. normals: a landmark is seen from the side that its normal points to."""
-    tolerance_m: float = 0.05
-    """The surface hides nothing this near to a landmark, which lies on it itself [m]."""
+    tolerance_m: float | None = None
+    """The surface hides nothing this near to a landmark, which lies on it itself; 1/300 of the size if not given [m]."""
     max_incidence_deg: float = 90.0
     """Largest angle between the normal and the direction to the camera [deg]."""
 
     def __post_init__(self) -> None:
-        expect_at_least_zero("tolerance_m", self.tolerance_m)
+        if self.tolerance_m is not None:
+            expect_at_least_zero("tolerance_m", self.tolerance_m)
         expect("max_incidence_deg", self.max_incidence_deg, "0 to 180", when=0.0 <= self.max_incidence_deg <= 180.0)
 
     def check(self, target: Target) -> None:
@@ -44,9 +45,9 @@ class Occlusion:
     def visible(self, target: Target, normals: Normals, centres: Centres) -> Seen:
         """Whether each landmark faces each camera; `centres` in the target frame. Raises ValueError for a bad mesh."""
         if self.kind == "mesh" and target.mesh is not None:
-            triangles = load_triangles(target.mesh)
-            columns = [~hidden(triangles, X, centres, self.tolerance_m) for X in target.positions]
-            return np.stack(columns, axis=1)
+            size_m = float(np.linalg.norm(np.ptp(target.positions, axis=0)))
+            tolerance_m = size_m / 300.0 if self.tolerance_m is None else self.tolerance_m
+            return visible_from(target.mesh, tolerance_m, target.positions.tobytes(), centres.tobytes())
         if self.kind == "normals":
             limit = np.cos(np.radians(self.max_incidence_deg)) - 1e-12
             cosines = incidence(target.positions, named_normals(target, normals), centres)
