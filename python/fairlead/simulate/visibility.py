@@ -28,7 +28,7 @@ class Occlusion:
     kind: Literal["none", "mesh", "normals"] = "none"
     """mesh: the target's surface. normals: a landmark is seen from the side that its normal points to."""
     tolerance_m: float | None = None
-    """The surface hides nothing this near to a landmark, which lies on it itself; 1/300 of the size if not given [m]."""
+    """The surface hides nothing this near to a landmark, which lies on it; 1/300 of the size if not given [m]."""
     max_incidence_deg: float = 90.0
     """Largest angle between the normal and the direction to the camera [deg]."""
 

@@ -76,7 +76,7 @@ def test_an_approach_slows_down_to_rest_over_the_hover():
     slowing = np.linalg.norm(acceleration(path, t), axis=1)
     assert slowing.max() == pytest.approx(1.5, rel=1e-3)
     np.testing.assert_allclose(path.centres(np.array([36.6, 46.0])), [path.hover_m] * 2, atol=1e-9)
-    with pytest.raises(ValueError, match="distance_m: expected at least the 312.5 m"):
+    with pytest.raises(ValueError, match=r"distance_m: expected at least the 312\.5 m"):
         Approach(distance_m=300.0)
 
 
@@ -170,5 +170,5 @@ def test_a_wrong_recording_is_one_line(tmp_path, text, message):
     ],
 )
 def test_impossible_flights_are_refused(make):
-    with pytest.raises(ValueError, match="^[a-z_]+: expected"):
+    with pytest.raises(ValueError, match=r"^[a-z_]+: expected"):
         make()
