@@ -47,17 +47,17 @@ class ModelError:
 
     def told_covariance(self, X0: Points3) -> ModelCovariance:
         """told_factor^2 P0 at the told landmarks, (3n, 3n) [m^2]."""
-        variances = np.diag(np.broadcast_to(np.asarray(self.sigma_m), (3,)) ** 2)
-        if self.told_independent:
-            return self.told_factor**2 * np.kron(np.eye(len(X0)), variances)
-        about = (X0 - X0.mean(axis=0)).ravel()
-        P0 = np.kron(self._alike(X0), variances) + self.scale_sigma**2 * np.outer(about, about)
-        return self.told_factor**2 * P0
+        variances = np.broadcast_to(np.asarray(self.sigma_m), (3,)) ** 2
+        covariance = np.diag(np.tile(variances, len(X0)))
+        if self.correlation_length_m > 0.0 and not self.told_independent:
+            covariance = np.kron(self._alike(X0), np.diag(variances))
+        if self.scale_sigma > 0.0 and not self.told_independent:
+            about = (X0 - X0.mean(axis=0)).ravel()
+            covariance += self.scale_sigma**2 * np.outer(about, about)
+        return self.told_factor**2 * covariance
 
     def _alike(self, X: Points3) -> np.ndarray:
-        """C, (n, n) [-]."""
-        if self.correlation_length_m == 0.0:
-            return np.eye(len(X))
+        """C, (n, n) [-]; only where there is a length."""
         return np.exp(-np.linalg.norm(X[:, None] - X, axis=2) / self.correlation_length_m)
 
 

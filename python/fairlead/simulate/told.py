@@ -3,6 +3,7 @@
 """The rough model: which landmarks are true and which are told. docs/simulate.md eq. (28)-(30)."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,13 +19,9 @@ def draw_targets(scenario: Scenario, streams: Streams) -> tuple[Target, Target]:
     drawn, told_covariance = _draw(scenario, streams)
     truth_is_given = scenario.target_is == "truth"
     X_true, X_told = (given.positions, drawn) if truth_is_given else (drawn, given.positions)
-    true = replace(
-        given,
-        positions=X_true,
-        covariance=np.zeros_like(given.covariance),
-        touchdown=given.touchdown if truth_is_given else _moved_point(given, drawn),
-        distances=(),
-    )
+    true = _known_exactly(given)
+    if not truth_is_given:
+        true = replace(true, positions=X_true, touchdown=_moved_point(given, drawn))
     told = replace(
         given,
         positions=X_told,
@@ -35,6 +32,12 @@ def draw_targets(scenario: Scenario, streams: Streams) -> tuple[Target, Target]:
         motion=given.motion if scenario.motion is None else scenario.motion,
     )
     return true, told
+
+
+@lru_cache(maxsize=16)
+def _known_exactly(given: Target) -> Target:
+    """The target as it is, without uncertainty; the same in all runs of a study."""
+    return replace(given, covariance=np.zeros_like(given.covariance), distances=())
 
 
 def _draw(scenario: Scenario, streams: Streams) -> tuple[Points3, ModelCovariance]:
