@@ -69,6 +69,14 @@ def test_the_told_may_know_less(short):
     assert np.abs(knowing.covariance - np.eye(60)).max() > 0.1
 
 
+def test_what_is_told_of_the_error_is_told_at_the_told_landmarks(short):
+    """Scale and correlation of (29) are taken at what the estimator knows, never at the truth."""
+    model = ModelError(sigma_m=3.0, scale_sigma=0.02, correlation_length_m=30.0)
+    told = simulate(replace(short, model=model), 7).target_told
+    np.testing.assert_array_equal(told.covariance, model.told_covariance(told.positions))
+    assert np.abs(told.covariance - model.told_covariance(short.target.positions)).max() > 0.01
+
+
 def test_either_may_be_given(short):
     """Truth given: told scatters about the file. Told given: the truth does, by the same error."""
     truth = simulate(short, 3)

@@ -57,6 +57,14 @@ def test_a_box_hides_its_far_corners(tmp_path, ship):
     assert Occlusion().visible(box, {}, centres).all()
 
 
+def test_what_lies_behind_the_camera_or_the_landmark_hides_nothing():
+    """A wall at x = 5: a camera at x = 10 is hidden from the origin, one at x = 4 or on the other side is not."""
+    wall = np.array([[[5.0, -9.0, -9.0], [5.0, 9.0, -9.0], [5.0, 0.0, 9.0]]])
+    centres = np.array([[10.0, 0.1, 0.2], [4.0, 0.1, 0.2], [-10.0, 0.1, 0.2]])
+    for triangles in (wall, wall[:, ::-1]):
+        assert hidden(triangles, np.zeros(3), centres, 0.0).tolist() == [True, False, False]
+
+
 def test_many_cameras_are_tried_in_turns():
     """More rays times triangles than are tried at once."""
     rng = np.random.default_rng(2)
