@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fairlead.geometry import project, transform
 from fairlead.simulate import (
     AttitudeSensor,
     Dropout,
@@ -26,6 +25,7 @@ from fairlead.simulate import (
     TargetMotion,
     Turning,
     load_scenario,
+    project_all,
     shipped_scenarios,
     simulate,
 )
@@ -34,12 +34,13 @@ from fairlead.simulate.streams import Streams
 
 def noise_of(flight):
     """What was added to the true pixels, by frame and landmark [px]."""
-    errors = {}
-    for view, T in zip(flight.views, flight.T_true, strict=True):
-        X = dict(zip(flight.target_true.landmarks, flight.X_true, strict=True))
-        z = project(flight.camera, transform(T, np.array([X[name] for name in view.landmarks]).reshape(-1, 3)))
-        errors |= {(view.frame, name): e for name, e in zip(view.landmarks, view.pixels - z, strict=True)}
-    return errors
+    column = {name: index for index, name in enumerate(flight.target_true.landmarks)}
+    exact = project_all(flight.camera, flight.X_true, flight.T_true)
+    return {
+        (view.frame, name): pixel - z[column[name]]
+        for view, z in zip(flight.views, exact, strict=True)
+        for name, pixel in zip(view.landmarks, view.pixels, strict=True)
+    }
 
 
 def readings_of(flight):

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from fairlead.simulate import ModelError, simulate
+from fairlead.simulate.streams import Streams
+from fairlead.simulate.told import draw_targets
 from fairlead.types import KnownDistance, MotionPrior
 
 
@@ -15,10 +17,10 @@ def mean_square(scenario, draws):
     """Mean of e^T P0^-1 e and of e e^T over flights; e: told minus true landmarks."""
     squares, errors = [], []
     for seed in range(draws):
-        flight = simulate(scenario, seed)
-        e = (flight.target_told.positions - flight.X_true).ravel()
+        true, told = draw_targets(scenario, Streams(seed))
+        e = (told.positions - true.positions).ravel()
         errors.append(e)
-        squares.append(e @ np.linalg.solve(flight.target_told.covariance, e))
+        squares.append(e @ np.linalg.solve(told.covariance, e))
     return np.mean(squares), np.array(errors)
 
 
@@ -96,7 +98,7 @@ def test_the_told_holds_nothing_that_only_truth_knows(short, tmp_path):
     rich = replace(short, target=replace(target, mesh=mesh, distances=(tape,)), motion=motion)
     errors = []
     for seed in range(200):
-        told = simulate(rich, seed).target_told
+        told = draw_targets(rich, Streams(seed))[1]
         assert told.mesh is None
         assert told.motion == motion
         np.testing.assert_array_equal(told.touchdown, told.positions[told.landmarks.index("helo_spot")])
