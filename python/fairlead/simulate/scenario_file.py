@@ -55,7 +55,7 @@ def shipped_scenarios() -> list[str]:
 def find_scenario(name: str) -> Path:
     """A file, or the scenario of this name that comes along. Raises InputError that names the nearest."""
     path = Path(name)
-    if path.suffix == ".toml" or path.exists():
+    if path.suffix == ".toml" or path.is_file():
         return path
     known = shipped_scenarios()
     if name not in known:

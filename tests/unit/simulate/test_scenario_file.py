@@ -168,6 +168,13 @@ def test_a_name_that_does_not_come_along_names_the_nearest():
         load_scenario("nothing.toml")
 
 
+def test_a_folder_of_that_name_is_no_scenario(tmp_path, monkeypatch):
+    """As after `fairlead simulate arc -o arc`."""
+    (tmp_path / "arc").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert load_scenario("arc").scenario.name == "arc"
+
+
 def test_text_survives_toml(tmp_path):
     """Quotes, controls and other scripts in a name."""
     name = 'a "b" \\ \t \x7f \x01 Schiff \u8239'
