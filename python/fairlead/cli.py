@@ -16,7 +16,16 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 from tyro.conf import subcommand
 
-from fairlead.config import Config, DemoConfig, EvaluateConfig, RefineConfig, SimulateConfig, TrackConfig, UsageError
+from fairlead.config import (
+    Config,
+    DemoConfig,
+    EvaluateConfig,
+    RefineConfig,
+    RenderConfig,
+    SimulateConfig,
+    TrackConfig,
+    UsageError,
+)
 from fairlead.io.errors import InputError, one_line
 
 if TYPE_CHECKING:
@@ -30,6 +39,7 @@ _Command = (
     | Annotated[RefineConfig, subcommand("refine")]
     | Annotated[EvaluateConfig, subcommand("evaluate")]
     | Annotated[SimulateConfig, subcommand("simulate")]
+    | Annotated[RenderConfig, subcommand("render")]
 )
 
 
@@ -84,6 +94,8 @@ def _complain(message: str, status: int) -> int:
 def _run(config: Config) -> int:
     if isinstance(config, SimulateConfig):
         return _simulate(config)
+    if isinstance(config, RenderConfig):
+        return _render(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -115,6 +127,19 @@ def _simulate(config: SimulateConfig) -> int:
     if written.ranges or written.attitudes:
         counts += f", {written.ranges} ranges, {written.attitudes} attitudes"
     sys.stdout.write(f"{written.output}: {counts}\n")
+    return 0
+
+
+def _render(config: RenderConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.render.command import render
+    from fairlead.render.errors import RenderError
+
+    try:
+        made = render(**vars(config), progress=progress_bar)
+    except RenderError as error:
+        return _complain(str(error), 2)
+    sys.stdout.write(f"{config.output}: {made} pictures made\n")
     return 0
 
 

@@ -102,4 +102,59 @@ class SimulateConfig:
             raise UsageError(f"--seed: expected a whole number >= 0, got {self.seed}")
 
 
-Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | DemoConfig
+@dataclass(frozen=True, kw_only=True)
+class RenderConfig:
+    """Render a target with a mesh: sequences with exact truth, or crops to train a detector with."""
+
+    sequence: Positional[str]
+    """orbit-2.0, rendezvous-10, rendezvous-20, rendezvous-30, landing, crops, or a truth.csv."""
+    output: Annotated[Path, arg(aliases=["-o"])]
+    """Folder for the images; what is there already is not rendered again."""
+    target: Path | None = None
+    """target.toml that names a mesh; the frigate if not given."""
+    camera: Path | None = None
+    """Calibration of a camera without distortion; camera.yaml beside the target if not given."""
+    quality: Literal["full", "draft"] = "full"
+    """full: Cycles, minutes an image. draft: OpenGL, a second."""
+    samples: int = 8
+    """Light paths per pixel at full quality: fewer are grainy, more take longer."""
+    surroundings: Literal["sea", "space"] = "sea"
+    """What the target is in."""
+    weather: Literal["fog", "rain", "snow", "glare", "dusk", "night", "low-contrast"] | None = None
+    """Between target and camera; crops draw their own."""
+    strength: float = 0.5
+    """Of the weather: 0 is clear, 1 as bad as it gets [-]."""
+    sun_elevation_deg: float = 35.0
+    """Of the sun above the horizon [deg]."""
+    wind_m_s: float = 7.5
+    """Makes the waves [m/s]."""
+    swell: bool = False
+    """Let the target heave, roll and pitch."""
+    stride: int = 5
+    """Every how many frames of the 25 Hz camera one is rendered."""
+    frames: int | None = None
+    """Only so many, from the first on."""
+    depth: bool = False
+    """Write depth images, too."""
+    reuse: Path | None = None
+    """Folder of the same sequence at full quality: its light is developed anew, with other weather."""
+    count: int = 1000
+    """How many crops."""
+    size: int = 256
+    """Side of a crop [px]."""
+    seed: int = 0
+    """Of everything that is drawn by chance."""
+    jobs: int = 1
+    """Processes."""
+
+    def __post_init__(self) -> None:
+        if not (
+            0.0 <= self.strength <= 1.0 and 1.0 <= self.wind_m_s <= 30.0 and -1.0 <= self.sun_elevation_deg <= 89.0
+        ):
+            raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
+        least = min(self.samples, self.stride, self.count, self.jobs, 1 if self.frames is None else self.frames)
+        if least < 1 or not 32 <= self.size <= 2048 or self.seed < 0:
+            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed not below 0")
+
+
+Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | RenderConfig | DemoConfig

@@ -7,6 +7,7 @@ docs/rendering.md section 4.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float32, Float64
@@ -45,7 +46,7 @@ class Sky:
     """On a plane that faces the sun."""
     overcast: float
 
-    @property
+    @cached_property
     def irradiance(self) -> Vector3:
         """Of the sky alone, on a level plane."""
         elevation, weight = _solid_angles(*self.radiance.shape[:2])
@@ -73,7 +74,7 @@ def make_sky(
     elevation, _ = _solid_angles(rows, columns)
     azimuth = 2.0 * np.pi * (np.arange(columns) + 0.5) / columns
     half = np.linspace(0.0, np.pi, 33)  # the clear sky is symmetric about the sun's azimuth
-    coarse = _scattered(elevation, half, e)
+    coarse = _whitened(_scattered(elevation, half, e), elevation, e)
     from_sun = np.abs((azimuth - sun_azimuth_rad + np.pi) % (2.0 * np.pi) - np.pi)
     place = np.clip(from_sun / np.pi * 32.0, 0.0, 31.999)
     left = place.astype(int)
@@ -170,6 +171,13 @@ def _scattered(elevation: np.ndarray, azimuth: np.ndarray, sun_elevation: float)
         source = source + phase_m[:, None, None] * (MIE * mie)[..., None]
         result[:, k] = SUN * (here * (sunlight * source + repeated) * width[..., None]).sum(1)
     return result
+
+
+def _whitened(clear: np.ndarray, elevation: np.ndarray, sun_elevation: float) -> np.ndarray:
+    """Light scattered many times has no colour left: pale horizons while the sun is up."""
+    share = 0.85 * np.exp(-elevation / 0.22) * np.clip(np.sin(sun_elevation) / 0.35, 0.0, 1.0)
+    pale = clear.mean(axis=-1, keepdims=True) * np.array([0.95, 1.0, 1.07])
+    return clear + share[:, None, None] * (pale - clear)
 
 
 def _with_clouds(

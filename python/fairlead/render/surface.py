@@ -3,6 +3,7 @@
 """A surface to be rendered: triangles, and what each is made of. Target axes, metres."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -50,13 +51,13 @@ class Surface:
         if self.material_of_face.min() < 0 or self.material_of_face.max() >= len(self.materials):
             raise ValueError("surface: a face names a material that does not exist")
 
-    @property
+    @cached_property
     def corners(self) -> tuple[Vector3, Vector3]:
         """Lowest and highest x, y, z [m]."""
         used = self.vertices[np.unique(self.faces)]
         return used.min(axis=0), used.max(axis=0)
 
-    @property
+    @cached_property
     def diameter(self) -> float:
         """Diagonal of the axis-parallel box [m]."""
         low, high = self.corners

@@ -105,7 +105,7 @@ def _foam(hull: Hull, speed: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     far = np.clip(astern, 0.0, None)
     width = 0.40 * B + 0.045 * far
     begin = np.clip((astern + 0.03 * L) / (0.04 * L), 0.0, 1.0)
-    core = np.exp(-((y / width) ** 4)) * begin * (0.25 + 0.75 * np.exp(-far / (2.2 * L)))
+    core = np.exp(-((y / width) ** 4)) * begin * (0.12 + 0.83 * np.exp(-far / (1.1 * L)))
     edges = 0.5 * np.exp(-(((y - width) / (0.15 * B + 0.01 * far)) ** 2)) * begin * np.exp(-far / (3.5 * L))
     return np.clip(strength * np.maximum.reduce([side, 1.05 * bow, 0.75 * arms, core, edges]), 0.0, 1.0)
 
@@ -114,17 +114,14 @@ def _height(hull: Hull, speed: float, x: np.ndarray, y: np.ndarray) -> np.ndarra
     """Free waves behind a bow and a stern source, docs/rendering.md eq. (2); (rows, columns) for y >= 0 [m]."""
     number = GRAVITY / speed**2
     total = np.zeros((len(y), len(x)))
-    angles = np.linspace(-1.25, 1.25, 181)
+    angles = np.linspace(-1.25, 1.25, 361)
+    k = number / np.cos(angles) ** 2
+    amplitude = (0.35 + np.sin(angles) ** 2) * np.cos(angles) * np.exp(-(angles**6)) * np.exp(-k / (2.2 * number + 0.5))
+    across = np.exp(1j * np.outer(y, k * np.sin(angles)))
     for source, sign in ((hull.bow - 0.06 * hull.length, 1.0), (hull.stern + 0.03 * hull.length, -0.7)):
         back = source - x
-        waves = np.zeros_like(total)
-        for angle in angles:
-            k = number / np.cos(angle) ** 2
-            amplitude = np.cos(angle) * np.exp(-((angle / 1.0) ** 6)) * np.exp(-k / (2.2 * number + 0.5))
-            along, across = k * np.cos(angle) * back, k * np.sin(angle) * y
-            waves += amplitude * (
-                np.cos(along)[None, :] * np.cos(across)[:, None] - np.sin(along)[None, :] * np.sin(across)[:, None]
-            )
+        along = amplitude[:, None] * np.exp(1j * np.outer(k * np.cos(angles), back))
+        waves = (across @ along).real
         wedge = np.clip((0.42 * back[None, :] + 2.0 - y[:, None]) / (0.05 * np.abs(back[None, :]) + 4.0), 0.0, 1.0)
         total += sign * waves * wedge * np.clip(back / 10.0, 0.0, 1.0)[None, :]
     decay = np.exp(-np.clip(hull.stern - x, 0.0, None) / (8.0 * hull.length))

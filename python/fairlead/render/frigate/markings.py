@@ -19,7 +19,7 @@ _SEGMENTS = {
     "f": (0.0, 0.5, 0.16, 1.0),
     "g": (0.0, 0.42, 0.6, 0.58),
 }
-_CHARACTERS = dict(
+_CHARACTERS: dict[str, str] = dict(
     (
         *(("0", "abcdef"), ("1", "bc"), ("2", "abged"), ("3", "abgcd"), ("4", "fgbc"), ("5", "afgcd")),
         *(("6", "afgedc"), ("7", "abc"), ("8", "abcdefg"), ("9", "abcdfg"), ("F", "aefg")),

@@ -1,0 +1,225 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Training crops of any target with a mesh: varied in everything, labelled exactly. docs/rendering.md section 8."""
+
+import json
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fairlead.io.coco import LabelledImage, label_json, write_coco
+from fairlead.opencv.filters import resized, write_image
+from fairlead.progress import ProgressFactory, silent
+from fairlead.render.crop_scene import CropScene, Stage
+from fairlead.render.crop_view import CropView, Envelope, draw_view
+from fairlead.render.disturbances import draw_obstacle, draw_sensor, smeared, tinted
+from fairlead.render.errors import RenderError
+from fairlead.render.images import LinearImage, Radiance
+from fairlead.render.job import horizon
+from fairlead.render.raster.model import Shot
+from fairlead.render.raster.renderer import Renderer
+from fairlead.render.sensor import Picture, develop
+from fairlead.render.surface_file import load_surface
+from fairlead.render.surroundings import Kind
+from fairlead.render.truth_tables import see
+from fairlead.render.weather import KINDS, Circumstances, Weather, apply_weather
+from fairlead.types import Camera, Target
+
+BLOCK = 64
+"""Crops that share sky, sea and shape: these cost a tenth of a second."""
+PAINT_EVERY = 8
+LABELS = "labels.jsonl"
+ANNOTATIONS = "annotations.json"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CropJob:
+    """Which crops. The same job gives the same crops, block by block, in any order."""
+
+    target: Target
+    camera: Camera
+    """That of the flight: a crop is cut out of its image, with its sharpness."""
+    folder: Path
+    count: int
+    envelope: Envelope
+    size: int = 256
+    seed: int = 0
+    surroundings: Kind = "sea"
+    weather_share: float = 0.35
+    """How many crops have weather [-]."""
+
+
+def render_crops(job: CropJob, *, jobs: int = 1, progress: ProgressFactory = silent) -> int:
+    """Write images/, labels.jsonl and at the end annotations.json; blocks that are there are kept. Returns how many
+    crops were made. Errors as render_sequence.
+    """
+    if job.target.mesh is None:
+        raise RenderError(f'target {job.target.name} names no mesh: add mesh = "..." to its target.toml')
+    (job.folder / "images").mkdir(parents=True, exist_ok=True)
+    labels = _labels_there(job.folder / LABELS)
+    blocks = [b for b in range(-(-job.count // BLOCK)) if not all(i in labels for i in _numbers(job, b))]
+    total = sum(len(_numbers(job, block)) for block in blocks)
+    with progress("crops", lambda: total) as advance, (job.folder / LABELS).open("a", encoding="utf-8") as stream:
+        for block in _rendered(job, blocks, jobs):
+            for label in block:
+                labels[label["id"]] = label
+                stream.write(json.dumps(label) + "\n")
+            stream.flush()
+            advance(len(block))
+    wanted = [labels[number] for number in range(job.count)]
+    write_coco(job.folder / ANNOTATIONS, job.target.name, job.target.landmarks, wanted)
+    return total
+
+
+def _numbers(job: CropJob, block: int) -> range:
+    return range(block * BLOCK, min((block + 1) * BLOCK, job.count))
+
+
+def _labels_there(path: Path) -> dict[int, dict[str, Any]]:
+    """Labels of earlier runs whose pictures exist; a torn last line is left out."""
+    labels: dict[int, dict[str, Any]] = {}
+    if not path.is_file():
+        return labels
+    for line in path.read_text(encoding="utf-8").splitlines():
+        try:
+            label = json.loads(line)
+            if (path.parent / label["image"]["file_name"]).is_file():
+                labels[int(label["id"])] = label
+        except (ValueError, KeyError, TypeError):
+            continue
+    return labels
+
+
+def _rendered(job: CropJob, blocks: list[int], jobs: int) -> Iterator[list[dict[str, Any]]]:
+    if jobs <= 1 or len(blocks) <= 1:
+        maker = CropMaker(job) if blocks else None
+        for block in blocks:
+            assert maker is not None
+            yield maker.make(block)
+        return
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_start, initargs=(job,)) as pool:
+        futures = [pool.submit(_make, block) for block in blocks]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        finally:
+            for future in futures:
+                future.cancel()
+
+
+_makers: list["CropMaker"] = []
+
+
+def _start(job: CropJob) -> None:
+    _makers.append(CropMaker(job))
+
+
+def _make(block: int) -> list[dict[str, Any]]:
+    return _makers[0].make(block)
+
+
+class CropMaker:
+    """Makes the crops of one job, block by block."""
+
+    def __init__(self, job: CropJob) -> None:
+        assert job.target.mesh is not None
+        self._job = job
+        surface = load_surface(job.target.mesh)
+        self._renderer = Renderer(job.size, job.size)
+        self._stage = Stage(self._renderer, job.target, surface, job.surroundings)
+
+    def make(self, block: int) -> list[dict[str, Any]]:
+        """Write the pictures of a block; returns their labels."""
+        scene = self._stage.set(np.random.default_rng([self._job.seed, block, 1]))
+        labels: list[dict[str, Any]] = []
+        for number in _numbers(self._job, block):
+            rng = np.random.default_rng([self._job.seed, number, 2])
+            if number % PAINT_EVERY == 0:
+                self._stage.paint(rng)
+            labels.append(self._crop(number, scene, rng))
+        return labels
+
+    def _crop(self, number: int, scene: CropScene, rng: np.random.Generator) -> dict[str, Any]:
+        job = self._job
+        view = draw_view(scene.X, job.camera, job.envelope, job.size, rng)
+        T_world_target = self._stage.place(rng)
+        shot = Shot(
+            camera=view.camera,
+            T_camera_target=view.T_camera_target,
+            T_world_target=T_world_target,
+            others=self._stage.others(T_world_target, rng),
+        )
+        image = self._renderer.draw(shot, self._stage.model)
+        seen = see(_moved(job.target, scene), view.camera, view.T_camera_target, scene.caster)
+        visibility = np.array([{"outside": 0, "hidden": 1, "visible": 2}[state] for state in seen.states])
+        picture, covered = self._photograph(image, shot, scene, view, rng)
+        for k in np.nonzero(visibility == 2)[0]:
+            u, v = np.clip(np.round(seen.pixels[k]), 0, job.size - 1).astype(int)
+            visibility[k] = 1 if covered[v, u] else 2
+        name = f"images/{number:06d}.jpg"
+        write_image(job.folder / name, np.ascontiguousarray(picture[..., ::-1]), quality=int(rng.integers(70, 97)))
+        low, high = np.nanmin(seen.pixels, axis=0), np.nanmax(seen.pixels, axis=0)
+        low, high = np.clip(low, -0.5, job.size - 0.5), np.clip(high, -0.5, job.size - 0.5)
+        return label_json(
+            LabelledImage(
+                number=number,
+                file_name=name,
+                width=job.size,
+                height=job.size,
+                pixels=np.where(visibility[:, None] > 0, seen.pixels, 0.0),
+                visibility=tuple(visibility.tolist()),
+                box=(float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1])),
+                K=view.camera.K,
+                T_camera_target=view.T_camera_target,
+            )
+        )
+
+    def _photograph(
+        self, image: LinearImage, shot: Shot, scene: CropScene, view: CropView, rng: np.random.Generator
+    ) -> tuple[Picture, np.ndarray]:
+        """The picture as the flight's camera would have made it, and which pixels something stands before."""
+        sky, size = scene.surroundings.sky, self._job.size
+        sensor = draw_sensor(sky.level_irradiance, rng)
+        if self._job.surroundings == "sea" and rng.random() < self._job.weather_share:
+            weather = Weather(
+                kind=KINDS[int(rng.integers(len(KINDS)))], strength=float(rng.uniform(0.05, 0.75)), seed=1
+            )
+            frame = Circumstances(
+                camera=shot.camera,
+                T_camera_world=shot.T_camera_world,
+                time_s=float(rng.uniform(0.0, 1000.0)),
+                air=horizon(sky),
+                sun_world=sky.sun_direction,
+            )
+            image, sensor = apply_weather(image, sensor, weather, frame)
+        light = tinted(image.radiance, rng)
+        covered = np.zeros((size, size), bool)
+        if rng.random() < 0.25:
+            for _ in range(int(rng.integers(1, 3))):
+                obstacle = draw_obstacle(size, 1.0 / sensor.exposure, rng)
+                light = obstacle.over(light)
+                covered |= obstacle.cover > 0.5
+        if rng.random() < 0.2:
+            light = smeared(light, rng)
+        return _sampled(light, view.native_px, size, lambda part: develop(part, sensor, rng)), covered
+
+
+def _moved(target: Target, scene: CropScene) -> Target:
+    """The target with its landmarks on the varied shape."""
+    zero = np.zeros_like(target.covariance)
+    return Target(name=target.name, landmarks=target.landmarks, positions=scene.X, covariance=zero)
+
+
+def _sampled(light: Radiance, native_px: float, size: int, photograph: Any) -> Picture:
+    """Photographed at the resolution of the flight's image, then enlarged as the tracker enlarges its crops."""
+    native = max(24, round(native_px))
+    if native >= size:
+        return photograph(light)
+    small = photograph(resized(light, native, native))
+    large = resized(small.astype(np.float32), size, size)
+    return np.clip(np.round(large), 0, 255).astype(np.uint8)
