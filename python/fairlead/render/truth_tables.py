@@ -51,7 +51,7 @@ def see(target: Target, camera: Camera, T_camera_target: Matrix4, caster: RayCas
         beyond = np.maximum(-0.5 - pixels, pixels - (size - 0.5)).max(axis=1)
     centre = -T_camera_target[:3, :3].T @ T_camera_target[:3, 3]
     free = caster.visible(centre, target.positions).tolist()
-    states = tuple(_state(off, seen) for off, seen in zip(beyond.tolist(), free, strict=True))
+    states: tuple[State, ...] = tuple(_state(off, seen) for off, seen in zip(beyond.tolist(), free, strict=True))
     return SeenLandmarks(pixels=pixels, depths=p[:, 2], states=states)
 
 
