@@ -78,8 +78,6 @@ def test_what_is_simulated_can_be_tracked(scenario: Path, tmp_path: Path, capsys
     metrics = json.loads((out / "metrics.json").read_text())["runs"]
     (values,) = (run["metrics"] for run in metrics.values())
     assert values["coverage_percent"] == 100.0
-    truth = ["--truth", str(d / "truth.csv"), "--target-true", str(d / "target_true.toml")]
-    assert main(["evaluate", str(out), *truth]) == 0
     paths = (d / "target.toml", d / "target_true.toml", out / "target_refined.toml")
     told, true, refined = (load_target(path) for path in paths)
     before, after = (np.linalg.norm(each.positions - true.positions, axis=1).mean() for each in (told, refined))

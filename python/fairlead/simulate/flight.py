@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from fairlead.simulate.frames import Exposures
+from fairlead.simulate.limits import expect
 from fairlead.simulate.mistakes import ImagePoints
 from fairlead.simulate.recorded import Recorded
 from fairlead.simulate.rotations import Times, motions
@@ -21,6 +22,9 @@ from fairlead.simulate.truth import Simulation, project_all
 from fairlead.simulate.visibility import Centres, Seen, in_image, incidence, named_normals
 from fairlead.types import AttitudeReading, Points3, Poses, RangeReading, Target, View
 
+MAX_OBSERVATIONS = 10_000_000
+"""Images times landmarks of one flight: all are drawn at once, in about 2 GB."""
+
 
 def simulate(scenario: Scenario, seed: Seed) -> Simulation:
     """One flight. The same scenario and seed give the same bits; each effect has a stream of its own.
@@ -31,6 +35,8 @@ def simulate(scenario: Scenario, seed: Seed) -> Simulation:
     true, told = draw_targets(scenario, streams)
     world = World(scenario, streams)
     turns = scenario.frames.turns(scenario.trajectory)
+    size = len(turns) * len(true.landmarks)
+    expect("frames", size, f"at most {MAX_OBSERVATIONS} images times landmarks", when=size <= MAX_OBSERVATIONS)
     exposures = scenario.frames.draw(turns, streams)
     T = world.T_camera_target(exposures.t_s)
     detections = detect(scenario, true, turns, T, streams)

@@ -19,7 +19,7 @@ DEFAULT_RATE_HZ = 25.0
 """Of a flight that is not recorded and says neither rate nor count [1/s]."""
 LARGEST_JITTER = 0.24
 """Jitter and errors of stamps are cut off at this share of the interval, so that no frame overtakes another [-]."""
-MAX_FRAMES = 1_000_000
+MAX_FRAMES = 200_000
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -48,6 +48,7 @@ class Noise:
         for field in ("correlation_time_s", "aspect_gain", "bias_px", "bias_m"):
             expect_at_least_zero(field, getattr(self, field))
         heavy = self.tail_dof == 0.0 or self.tail_dof > 2.0
+        expect("range_exponent", self.range_exponent, "-4 to 4", when=-4.0 <= self.range_exponent <= 4.0)
         expect("tail_dof", self.tail_dof, "0 or a number > 2", when=heavy)
 
     @property

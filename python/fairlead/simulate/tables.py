@@ -16,6 +16,9 @@ from fairlead.io.paths import resolve_inside
 
 Record = TypeVar("Record")
 
+LARGEST = 1e9
+"""No number of a scenario is larger; what is computed of it then stays finite."""
+
 
 def read_record(
     record_type: type[Record],
@@ -36,6 +39,8 @@ def read_record(
         key = field.name
         if key not in values and key in fields:
             values[key] = _value(hints[key], fields, key, path, _join(where, key))
+            if _largest(values[key]) > LARGEST:
+                raise fields.error(key, f"expected numbers up to {LARGEST:g}, got {fields.get(key)!r}"[:160])
         if key not in values and field.default is field.default_factory is dataclasses.MISSING:
             raise fields.error(key, "missing")
     try:
@@ -44,6 +49,15 @@ def read_record(
         raise
     except ValueError as error:
         raise InputError(path, _join(where, str(error))) from error
+
+
+def _largest(value: object) -> float:
+    """Largest magnitude of the numbers in a value; 0 where there is none."""
+    if isinstance(value, Mapping):
+        return max(map(_largest, cast(Mapping[str, object], value).values()), default=0.0)
+    if isinstance(value, tuple):
+        return max(map(_largest, cast(tuple[object, ...], value)), default=0.0)
+    return abs(value) if isinstance(value, float) else 0.0
 
 
 def _join(where: str, key: str) -> str:
