@@ -27,7 +27,7 @@ class Setting:
 
     surroundings: Kind = "sea"
     sun_elevation_deg: float = 35.0
-    sun_azimuth_deg: float = 70.0
+    sun_azimuth_deg: float = 235.0
     """From the target's x axis to its y axis; the ship steams along x."""
     wind_m_s: float = 7.5
     wind_azimuth_deg: float = 150.0

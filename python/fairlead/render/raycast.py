@@ -45,7 +45,7 @@ class RayCaster:
         low, high = surface.corners
         self._centre = 0.5 * (low + high)
         self._radius = 0.51 * surface.diameter
-        self._scene = rtcore_scene.EmbreeScene()
+        self._scene = rtcore_scene.EmbreeScene()  # pyright: ignore[reportAttributeAccessIssue]
         corners = surface.vertices[surface.faces]
         self._origin = corners[:, 0]
         self._normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -16,7 +16,7 @@ Kind = Literal["sea", "space"]
 
 WATER = (0.0010, 0.0060, 0.0120)
 """Radiance that comes up out of the water, per irradiance on it [1/sr]."""
-CLEAR_AIR_M = 50_000.0
+CLEAR_AIR_M = 70_000.0
 """How far one sees on a clear day [m]; contrast then is 2 %."""
 
 

@@ -20,7 +20,7 @@ def open_context() -> "moderngl.Context":
     except ImportError as error:
         raise RenderError("moderngl is not installed: pip install 'fairlead[render]'") from error
     try:
-        context = moderngl.create_context(standalone=True, backend="egl", require=330)  # pyright: ignore[reportCallIssue]
+        context = moderngl.create_context(standalone=True, backend="egl", require=330)  # pyright: ignore[reportArgumentType]
     except Exception as error:  # the loader raises whatever the driver made of it
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise RenderError(
