@@ -199,6 +199,15 @@ def defaults() -> list[tuple[str, str, object]]:
     ]
 
 
+def test_the_python_of_the_page_runs(repository):
+    page = (repository / "docs" / "simulate.md").read_text(encoding="utf-8")
+    (program,) = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    names: dict[str, object] = {}
+    exec(program.replace("range(1000)", "range(2)"), names)
+    assert names["run"] == 1
+    assert len(names["told"]) == 4
+
+
 def test_the_page_names_every_key_with_its_default(repository):
     """docs/simulate.md: a row | `key` | default | in the part of each table."""
     page = (repository / "docs" / "simulate.md").read_text(encoding="utf-8")
