@@ -40,7 +40,8 @@ def test_what_is_written_reads_back_the_same(name, tmp_path):
 
 def test_names_of_what_comes_along():
     expected = {"arc", "flight-30s", "rolling-ship-3", "rolling-ship-5", "turn-3g", "stop", "landing", "orbit-2.0"}
-    assert expected | {"rendezvous-10", "rendezvous-20", "rendezvous-30", "rough"} == set(shipped_scenarios())
+    expected |= {"rendezvous-10", "rendezvous-20", "rendezvous-30", "rough", "correlated-noise", "range-finder"}
+    assert expected == set(shipped_scenarios())
     for name in shipped_scenarios():
         assert load_scenario(name).scenario.name == name
 
