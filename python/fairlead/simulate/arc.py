@@ -50,6 +50,9 @@ class ArcScenario:
 def simulate_arc(target: Target, camera: Camera, scenario: ArcScenario, rng: np.random.Generator) -> Simulation:
     """Draw one flight: a rough model about the true `target`, observations of all true landmarks in all views.
 
+    All draws come from one stream: the recorded numbers of the benchmarks rest on them. `simulate` flies the same arc
+    with a stream per effect (scenario `arc`, docs/simulate.md).
+
     Parameters
     ----------
     target : its positions are the truth; its covariance is replaced by what the scenario tells
