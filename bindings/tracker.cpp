@@ -92,6 +92,12 @@ window::Problem make_problem(const Camera& camera, const Rows3& X, const Rows44&
     return problem;
 }
 
+Mat33 to_rotation(const Square& R) {
+    const MatX matrix = to_matrix(R);
+    if (matrix.rows() != 3) throw std::invalid_argument("R_world_camera: expected 3 x 3");
+    return matrix;
+}
+
 nb::tuple solve_window(const Camera& camera, const Rows3& X, const Rows44& T, const Indices& view_index,
                        const Indices& landmarks, const Rows2& pixels, const Rows22& covariances,
                        const nb::object& prior_mean, const nb::object& prior_information, double loss_threshold,
@@ -129,6 +135,12 @@ void bind_options(nb::module_& m) {
         .def_rw("max_step_rad", &TrackerOptions::max_step_rad)
         .def_rw("confirmations", &TrackerOptions::confirmations)
         .def_rw("ambiguity_log_odds", &TrackerOptions::ambiguity_log_odds)
+        .def_prop_rw(
+            "motion", [](const TrackerOptions& o) { return motion::to_string(o.motion); },
+            [](TrackerOptions& o, const std::string& name) { o.motion = motion::kind_named(name); })
+        .def_rw("jerk_density_m_s25", &TrackerOptions::jerk_density_m_s25)
+        .def_rw("correlation_time_s", &TrackerOptions::correlation_time_s)
+        .def_rw("range_to_origin", &TrackerOptions::range_to_origin)
         .def_rw("seed", &TrackerOptions::seed);
 }
 
@@ -141,13 +153,32 @@ void bind_tracker(nb::module_& m) {
              [](Tracker* self, const Camera& camera, const Rows3& X0, const Square& P0, const TrackerOptions& options) {
                  new (self) Tracker(camera, to_points(X0), to_matrix(P0), options);
              })
+        .def("add_length", &Tracker::add_length)
+        .def("add_range", &Tracker::add_range)
+        .def("add_attitude", [](Tracker& t, std::int64_t stamp_ns, const Square& R,
+                                double sigma_rad) { t.add_attitude(stamp_ns, to_rotation(R), sigma_rad); })
+        .def("add_pose", [](Tracker& t, std::int64_t stamp_ns, const Rows44& T,
+                            const Square& covariance) { t.add_pose(stamp_ns, to_pose(T, 0), to_matrix(covariance)); })
         .def("update", &update)
         .def("landmarks",
              [](const Tracker& t) { return to_array(std::vector<Vec3>(t.landmarks().begin(), t.landmarks().end())); })
         .def("landmark_covariance", [](const Tracker& t) { return to_array(t.landmark_covariance()); })
         .def_prop_ro("noise_factor", &Tracker::noise_factor)
         .def_prop_ro("prior_factor", &Tracker::prior_factor)
+        .def("gauge_sigma",
+             [](const Tracker& t, bool told) {
+                 const window::GaugeSigma sigma = told ? t.gauge_sigma_told() : t.gauge_sigma();
+                 VecX all(7);
+                 all << sigma.translation_m, sigma.rotation_rad, sigma.scale;
+                 return to_array(all);
+             })
+        .def("predicted_gain", [](const Tracker& t, const Rows44& T,
+                                  double sigma_px) { return t.predicted_gain(to_pose(T, 0), sigma_px); })
+        .def_prop_ro("determined_directions", &Tracker::determined_directions)
+        .def_prop_ro("ranges_believed", &Tracker::ranges_believed)
+        .def_prop_ro("ranges_refused", &Tracker::ranges_refused)
         .def_prop_ro("views_in_window", &Tracker::views_in_window);
+    m.attr("ORIGIN") = Tracker::kOrigin;
     m.def("refine", &refine_views);
     m.def("solve_window", &solve_window, nb::arg("camera"), nb::arg("X"), nb::arg("T"), nb::arg("view_index"),
           nb::arg("landmarks"), nb::arg("pixels"), nb::arg("covariances"), nb::arg("prior_mean") = nb::none(),

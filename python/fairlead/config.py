@@ -53,6 +53,10 @@ class TrackConfig(InputConfig):
 
     method: Method = "map"
     """map: this project's estimator. window: the published one. epnp: each frame alone."""
+    range: Path | None = None
+    """range.csv: readings of a range finder (method map)."""
+    attitude: Path | None = None
+    """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
 
 
 @dataclass(frozen=True, kw_only=True)

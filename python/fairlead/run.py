@@ -6,20 +6,23 @@ import itertools
 import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
+from fairlead.io.attitudes import read_attitudes
 from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
 from fairlead.io.options import load_options
 from fairlead.io.poses import read_truth
+from fairlead.io.ranges import read_ranges
 from fairlead.io.run_record import RunRecord, input_file
 from fairlead.io.target import load_target
 from fairlead.io.timing import Timing
 from fairlead.progress import ProgressFactory, silent
 from fairlead.sinks.run_folder import WRITTEN, RunFolder
 from fairlead.sources.image_folder import ImageFolderSource
+from fairlead.sources.readings import SensorReadings
 from fairlead.sources.source import ImageFrame, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
@@ -55,7 +58,10 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
     """
     target, camera = _load(config)
     source = open_views(config, target, camera)
+    readings = sensor_readings(config, target)
     options = tracker_options(config.options)
+    if any(reading.landmark is None for reading in readings.ranges):
+        options = replace(options, range_to_origin=True)
     estimator = make_estimator(config, options, target, camera)
     timed_views = _timed(source, config.source)
     record = _record("track", config, options if config.method == "map" else None)
@@ -64,6 +70,8 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
         with progress("track", source.count) as advance:
             for view, detect_ms in timed_views:
                 start_s = time.perf_counter()
+                if isinstance(estimator, Tracker):
+                    readings.tell(estimator, view)
                 estimate = estimator.update(view)
                 update_ms = 1e3 * (time.perf_counter() - start_s)
                 folder.write_view(view)
@@ -168,6 +176,21 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
     return DetectedViews(images, lambda each: detector.detect(each.image, each.frame, each.stamp_ns))
 
 
+def sensor_readings(config: TrackConfig, target: Target) -> SensorReadings:
+    """What other sensors said. Raises InputError, UsageError."""
+    for path, name in ((config.range, "--range"), (config.attitude, "--attitude")):
+        if path is not None and config.method != "map":
+            raise UsageError(f"{name}: method {config.method} has no use for it")
+    readings = SensorReadings(
+        ranges=[] if config.range is None else read_ranges(config.range),
+        attitudes=[] if config.attitude is None else read_attitudes(config.attitude),
+    )
+    for reading in readings.ranges:
+        if reading.landmark is not None and reading.landmark not in target.landmarks:
+            raise InputError(config.range or "", f"the target has no landmark {reading.landmark!r}")
+    return readings
+
+
 def make_estimator(config: TrackConfig, options: TrackerOptions, target: Target, camera: Camera) -> PoseEstimator:
     """The estimator of a method. Raises InputError for a target or options that it cannot use."""
     try:
@@ -234,6 +257,8 @@ def _input_paths(config: InputConfig) -> dict[str, Path]:
     """Every file that was named, by its role."""
     paths = {"source": config.source, "target": config.target, "camera": config.camera}
     more = {"options": config.options, "truth": config.truth}
+    if isinstance(config, TrackConfig):
+        more |= {"range": config.range, "attitude": config.attitude}
     return paths | {role: path for role, path in more.items() if path is not None}
 
 

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from fairlead import _core
-from fairlead.types import Camera, Estimate, Target, View
+from fairlead.types import Camera, Estimate, Matrix3, Matrix4, Matrix6, Target, View
 
 _D = _core.TrackerOptions()
 
@@ -37,6 +37,14 @@ class TrackerOptions:
     """Views that must agree before such a turn is believed."""
     ambiguity_log_odds: float = _D.ambiguity_log_odds
     """Two poses whose log odds [nat] are closer than this are both kept."""
+    motion: str = _D.motion
+    """What is smooth in time: none, range, target or world, docs/motion.md. A `[motion]` of the target overrides it."""
+    jerk_density_m_s25: float = _D.jerk_density_m_s25
+    """Root of the power spectral density of its jerk [m/s^2.5], as a first guess: the data judge it."""
+    correlation_time_s: float = _D.correlation_time_s
+    """Time over which detections err alike [s]: neighbouring views then say little new, docs/motion.md eq. (12)."""
+    range_to_origin: bool = _D.range_to_origin
+    """Whether readings of the range to the target's origin will come, docs/range.md."""
     seed: int = _D.seed
     """Of the consensus search."""
 
@@ -89,6 +97,18 @@ def _estimate(frame: int, core: _CoreEstimate, landmarks: Sequence[str]) -> Esti
     )
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Observability:
+    """Of the current model, docs/range.md."""
+
+    gauge_sigma_told: np.ndarray
+    """Before the first view: translation x y z [m], rotation x y z [rad], scale [-], one standard deviation each."""
+    gauge_sigma: np.ndarray
+    """Now."""
+    determined: float
+    """Directions of the model that the data determine, of 3N."""
+
+
 class Tracker:
     """Pose of a roughly known target in every view, and the model getting better as views come in.
 
@@ -108,7 +128,37 @@ class Tracker:
         self._target = target
         self._index = LandmarkIndex(target.landmarks)
         options = options or TrackerOptions()
+        if target.motion is not None:
+            motion = target.motion
+            options = replace(options, motion=motion.kind, jerk_density_m_s25=motion.jerk_density_m_s25)
         self._core = _core.Tracker(core_camera(camera), target.positions, target.covariance, options.to_core())
+        for distance in target.distances:
+            a, b = self._index(distance.between)
+            self._core.add_length(a, b, distance.length_m, distance.sigma_m)
+
+    def add_range(self, stamp_ns: int, range_m: float, sigma_m: float, landmark: str | None = None) -> None:
+        """A reading of a range finder [m], camera to landmark (None: to the target's origin), for the next view.
+
+        Give readings in the order of their stamps. One that does not agree with those before it is not believed,
+        docs/range.md. Raises ValueError for an unknown landmark, numbers that are not positive, or a range to the
+        origin without `TrackerOptions.range_to_origin`.
+        """
+        number = _core.ORIGIN if landmark is None else int(self._index([landmark])[0])
+        self._core.add_range(stamp_ns, range_m, sigma_m, number)
+
+    def add_attitude(self, stamp_ns: int, R_world_camera: Matrix3, sigma_rad: float) -> None:
+        """The camera's attitude in a world-aligned frame at a view's stamp, for motion `world`, docs/motion.md.
+
+        Raises ValueError unless it is a rotation.
+        """
+        self._core.add_attitude(stamp_ns, R_world_camera, sigma_rad)
+
+    def add_pose(self, stamp_ns: int, T_camera_target: Matrix4, covariance: Matrix6) -> None:
+        """Where the target is thought to be while it is not tracked: the search of the next view starts there.
+
+        Raises ValueError unless it is a rigid motion with a positive definite covariance of xi in T Exp(xi).
+        """
+        self._core.add_pose(stamp_ns, np.ascontiguousarray(T_camera_target)[None], covariance)
 
     def update(self, view: View) -> Estimate:
         """Take in one view; bad data end in the status, never in an exception.
@@ -122,6 +172,25 @@ class Tracker:
     def model(self) -> Target:
         """The target with the current landmarks [m] and their full covariance [m^2]."""
         return replace(self._target, positions=self._core.landmarks(), covariance=self._core.landmark_covariance())
+
+    def observability(self) -> "Observability":
+        """What the data have fixed of the model, and what only the prior holds, docs/range.md eq. (3)."""
+        told, now = self._core.gauge_sigma(True), self._core.gauge_sigma(False)  # noqa: FBT003
+        return Observability(gauge_sigma_told=told, gauge_sigma=now, determined=self._core.determined_directions)
+
+    def predicted_gain(self, T_camera_target: Matrix4, sigma_px: float = 1.0) -> float:
+        """What a view of all landmarks from this pose would add to the information about the model [nats], eq. (4)."""
+        return self._core.predicted_gain(np.ascontiguousarray(T_camera_target)[None], sigma_px)
+
+    @property
+    def ranges_believed(self) -> int:
+        """Readings of the range finder that were used so far."""
+        return self._core.ranges_believed
+
+    @property
+    def ranges_refused(self) -> int:
+        """Readings that did not agree with the others, or came too late."""
+        return self._core.ranges_refused
 
     @property
     def noise_factor(self) -> float:

@@ -8,6 +8,7 @@
 #include "fairlead/pnp/observation.hpp"
 #include "fairlead/tracker/estimate.hpp"
 #include "fairlead/tracker/options.hpp"
+#include "fairlead/window/observability.hpp"
 
 namespace fairlead {
 
@@ -24,6 +25,20 @@ class Tracker {
     Tracker(Tracker&&) noexcept;
     Tracker& operator=(Tracker&&) noexcept;
 
+    /// A measured distance between two landmarks (a scale bar), any number of them. Throws std::invalid_argument for
+    /// numbers that mean nothing.
+    void add_length(int a, int b, double length_m, double sigma_m);
+    /// A reading of a range finder, camera to landmark, or to the target's origin (kOrigin; the option range_to_origin
+    /// must be on): used with the next view, or not believed. docs/range.md. Throws as above.
+    void add_range(std::int64_t stamp_ns, double range_m, double sigma_m, int landmark);
+    /// The camera's attitude in a world-aligned frame, for motion::Kind::world: used with a view taken within 0.1 s.
+    /// Throws as above.
+    void add_attitude(std::int64_t stamp_ns, const Mat33& R_world_camera, double sigma_rad);
+    /// Where the target is thought to be, before it was found or after it was lost: the search starts there. Throws as
+    /// above.
+    void add_pose(std::int64_t stamp_ns, const SE3& T_camera_target, const Mat66& covariance);
+    static constexpr int kOrigin = -1;
+
     /// The pose of the target in the view taken at stamp_ns. Bad data end in the status, never in an exception.
     Estimate update(std::int64_t stamp_ns, std::span<const Observation> observations) noexcept;
 
@@ -31,7 +46,16 @@ class Tracker {
     [[nodiscard]] MatX landmark_covariance() const;                  ///< 3N x 3N [m^2]
     [[nodiscard]] double noise_factor() const noexcept;              ///< of the told pixel covariances, estimated [-]
     [[nodiscard]] double prior_factor() const noexcept;              ///< of the told model covariance, estimated [-]
+    /// What no image can tell of the model, as known before the first view and now; docs/range.md.
+    [[nodiscard]] window::GaugeSigma gauge_sigma_told() const;
+    [[nodiscard]] window::GaugeSigma gauge_sigma() const;
+    /// Directions of the model (of 3N) that the data determine.
+    [[nodiscard]] double determined_directions() const noexcept;
+    /// What a view from this pose would add to what is known of the model [nats].
+    [[nodiscard]] double predicted_gain(const SE3& T_camera_target, double sigma_px) const;
     [[nodiscard]] int views_in_window() const noexcept;
+    [[nodiscard]] int ranges_believed() const noexcept;
+    [[nodiscard]] int ranges_refused() const noexcept;
 
   private:
     struct State;

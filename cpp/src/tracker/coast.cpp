@@ -18,6 +18,7 @@ void Coast::restart(std::int64_t stamp_ns, const SE3& T, const Mat66& covariance
     stamp_ns_ = reference_ns_ = stamp_ns;
     T_ = reference_ = T;
     covariance_ = covariance;
+    range_rate_ = 0.0;
     Vec6 rate;
     rate << Vec3::Constant(kUnknownSpeed * T.t.norm()), Vec3::Constant(kUnknownTurn);
     rate_ = rate.cwiseAbs2().asDiagonal();
@@ -31,6 +32,7 @@ void Coast::observe(std::int64_t stamp_ns, const SE3& T, const Mat66& covariance
     if (interval < kInterval) return;
     const Vec6 v = difference(reference_, T) / interval;
     rate_ = kMemory * rate_ + (1.0 - kMemory) * v * v.transpose();
+    range_rate_ = (T.t.norm() - reference_.t.norm()) / interval;
     reference_ns_ = stamp_ns;
     reference_ = T;
 }

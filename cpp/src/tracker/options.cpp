@@ -26,6 +26,10 @@ void validate(const TrackerOptions& options) {
             options.coast_limit_s, "zero or more seconds");
     require(options.max_step_rad > 0.0, "max_step_rad", options.max_step_rad, "a positive angle");
     require(options.confirmations >= 1, "confirmations", options.confirmations, "at least 1");
+    require(options.jerk_density_m_s25 > 0.0 && std::isfinite(options.jerk_density_m_s25), "jerk_density_m_s25",
+            options.jerk_density_m_s25, "a positive number");
+    require(options.correlation_time_s >= 0.0 && std::isfinite(options.correlation_time_s), "correlation_time_s",
+            options.correlation_time_s, "zero or more seconds");
     require(options.ambiguity_log_odds >= 0.0, "ambiguity_log_odds", options.ambiguity_log_odds, "zero or more");
 }
 

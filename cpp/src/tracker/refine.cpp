@@ -72,7 +72,7 @@ class Batch {
 
     [[nodiscard]] UncertainModel model() const { return {problem_.X, blocks_}; }
     [[nodiscard]] double cost(const window::ViewBlock& view, const SE3& T) const {
-        return window::view_cost(problem_.camera, problem_.X, problem_.told_loss(), T, view);
+        return window::view_cost(problem_.camera, problem_.X, problem_.told_loss(), problem_.noise_factor, T, view);
     }
 
     TrackerOptions options_;

@@ -6,19 +6,21 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "fairlead/tracker/coast.hpp"
 #include "fairlead/tracker/hypotheses.hpp"
+#include "fairlead/tracker/readings.hpp"
 #include "fairlead/tracker/sanitise.hpp"
 #include "fairlead/tracker/structure.hpp"
 
 namespace fairlead {
 namespace {
 
-constexpr int kClockConfirmations =
-    10;                             // views with earlier stamps, in order, that are a new clock rather than stray ones
-constexpr double kSameStep = 0.35;  // [rad] turn within which two views agree about a jump
+constexpr int kClockConfirmations = 10;  // views with earlier stamps, in order, that are a new clock, not stray ones
+constexpr double kSameStep = 0.35;       // [rad] turn within which two views agree about a jump
+constexpr double kRateShare = 0.1;  // how far the closing speed of a smooth path may be off, one standard deviation
 constexpr double kDecisiveShare = 0.75;  // inliers that make a jump evident at once
 
 double turn(const SE3& a, const SE3& b) { return so3::log(a.R.transpose() * b.R).norm(); }
@@ -38,14 +40,17 @@ struct Tracker::State {
     State(const Camera& camera_in, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options_in)
         : camera(camera_in),
           options(options_in),
-          structure(camera_in, X0, P0, options_in.max_views, options_in.loss_threshold) {
+          landmarks(X0.size() - (options_in.range_to_origin ? 1 : 0)),
+          structure(camera_in, X0, P0, options_in) {
         for (auto* list : {&clean, &scratch, &kept}) list->reserve(X0.size());
         inliers.reserve(X0.size());
     }
 
     Camera camera;
     TrackerOptions options;
+    std::size_t landmarks;  ///< the origin, where it is one more, not counted
     Structure structure;
+    Readings readings;
     Coast coast;
     Hypotheses hypotheses;
     Status status = Status::acquiring;
@@ -161,7 +166,12 @@ void Tracker::State::describe_residuals(Estimate& estimate) noexcept {
 Estimate Tracker::State::fused(Estimate estimate, const SE3& T_start, bool continuous) noexcept {
     keep_inliers(T_start);
     if (kept.size() < 4) return without_fresh_pose(estimate, Reason::gated);
-    const Fusion fusion = structure.fuse(estimate.stamp_ns, T_start, kept);
+    if (!continuous) structure.interrupt();
+    const std::optional<double> smooth_rate = structure.range_rate();
+    const auto ranges =
+        readings.ranges_at(estimate.stamp_ns, smooth_rate.value_or(coast.range_rate()), smooth_rate ? kRateShare : 1.0);
+    const Fusion fusion =
+        structure.fuse(estimate.stamp_ns, T_start, kept, ranges, readings.attitude_at(estimate.stamp_ns));
     if (!fusion.ok) return without_fresh_pose(estimate, Reason::diverged);
     estimate.T_camera_target = fusion.T_camera_target;
     estimate.covariance = fusion.covariance;
@@ -185,7 +195,7 @@ Estimate Tracker::State::update(std::int64_t stamp_ns, std::span<const Observati
     estimate.resets = resets;
     estimate.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
     const std::span<const Observation> taken = observations.first(std::min(observations.size(), std::size_t{1} << 20));
-    estimate.dropped = sanitise(taken, static_cast<int>(structure.landmarks().size()), clean);
+    estimate.dropped = sanitise(taken, static_cast<int>(landmarks), clean);
     if (stamp_is_stray(stamp_ns))
         return without_pose(estimate, status == Status::acquiring ? status : Status::lost, Reason::stamp);
     last_stamp_ns = stamp_ns;
@@ -213,10 +223,46 @@ Estimate Tracker::State::update(std::int64_t stamp_ns, std::span<const Observati
 Tracker::Tracker(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options) {
     validate(options);
     validate(camera);
-    if (X0.size() < 4)
-        throw std::invalid_argument("landmarks: got " + std::to_string(X0.size()) +
-                                    ", expected at least 4 (a pose needs them)");
-    state_ = std::make_unique<State>(camera, X0, P0, options);
+    require(X0.size() >= 4, "landmarks", std::to_string(X0.size()), "at least 4 (a pose needs them)");
+    std::vector<Vec3> X(X0.begin(), X0.end());
+    MatX P = P0;
+    if (options.range_to_origin) {  // one more landmark, known exactly: it is the origin of the told frame
+        X.emplace_back(Vec3::Zero());
+        P = MatX::Zero(P0.rows() + 3, P0.cols() + 3);
+        P.topLeftCorner(P0.rows(), P0.cols()) = P0;
+    }
+    state_ = std::make_unique<State>(camera, X, P, options);
+}
+
+void Tracker::add_length(int a, int b, double length_m, double sigma_m) {
+    const int n = static_cast<int>(state_->landmarks);
+    require(a >= 0 && b >= 0 && a < n && b < n && a != b, "length between",
+            std::to_string(a) + " and " + std::to_string(b), "two landmarks of " + std::to_string(n));
+    require_positive(length_m, "length_m");
+    require_positive(sigma_m, "sigma_m");
+    state_->structure.add_length({a, b, length_m, sigma_m});
+}
+
+void Tracker::add_range(std::int64_t stamp_ns, double range_m, double sigma_m, int landmark) {
+    const int n = static_cast<int>(state_->landmarks);
+    require((landmark == kOrigin && state_->options.range_to_origin) || (landmark >= 0 && landmark < n), "range to",
+            std::to_string(landmark), "a landmark, or the origin with the option range_to_origin");
+    state_->readings.add_range(stamp_ns, {landmark == kOrigin ? n : landmark, range_m, sigma_m});
+    state_->structure.expect_ranges();
+}
+
+void Tracker::add_attitude(std::int64_t stamp_ns, const Mat33& R_world_camera, double sigma_rad) {
+    state_->readings.add_attitude(stamp_ns, {R_world_camera, sigma_rad});
+}
+
+void Tracker::add_pose(std::int64_t stamp_ns, const SE3& T_camera_target, const Mat66& covariance) {
+    require(is_rotation(T_camera_target.R) && T_camera_target.t.allFinite(), "T_camera_target", "another matrix",
+            "a rigid motion");
+    require(covariance.allFinite() && covariance.llt().info() == Eigen::Success, "covariance", "another matrix",
+            "a symmetric positive definite one");
+    if (state_->status == Status::tracking || state_->status == Status::coasting) return;
+    state_->coast.restart(stamp_ns, T_camera_target, covariance);
+    state_->status = Status::coasting;
 }
 
 Tracker::~Tracker() = default;
@@ -227,10 +273,28 @@ Estimate Tracker::update(std::int64_t stamp_ns, std::span<const Observation> obs
     return state_->update(stamp_ns, observations);
 }
 
-std::span<const Vec3> Tracker::landmarks() const noexcept { return state_->structure.landmarks(); }
-MatX Tracker::landmark_covariance() const { return state_->structure.covariance(); }
+std::span<const Vec3> Tracker::landmarks() const noexcept {
+    return state_->structure.landmarks().first(state_->landmarks);
+}
+MatX Tracker::landmark_covariance() const {
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(state_->landmarks);
+    return state_->structure.covariance().topLeftCorner(n, n);
+}
 double Tracker::noise_factor() const noexcept { return state_->structure.noise_factor(); }
 double Tracker::prior_factor() const noexcept { return state_->structure.prior_factor(); }
+window::GaugeSigma Tracker::gauge_sigma_told() const {
+    return window::gauge_sigma(state_->structure.landmarks_told(), state_->structure.covariance_told());
+}
+window::GaugeSigma Tracker::gauge_sigma() const {
+    return window::gauge_sigma(state_->structure.landmarks(), state_->structure.covariance_linear());
+}
+double Tracker::determined_directions() const noexcept { return state_->structure.determined_directions(); }
+double Tracker::predicted_gain(const SE3& T_camera_target, double sigma_px) const {
+    return window::predicted_gain(state_->camera, state_->structure.landmarks(), state_->structure.covariance_linear(),
+                                  T_camera_target, sigma_px);
+}
 int Tracker::views_in_window() const noexcept { return state_->structure.views(); }
+int Tracker::ranges_believed() const noexcept { return state_->readings.believed(); }
+int Tracker::ranges_refused() const noexcept { return state_->readings.refused(); }
 
 }  // namespace fairlead

@@ -47,14 +47,12 @@ double structure_covariance(const Problem& problem, Workspace& workspace, MatX& 
 StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma,
                              double noise_factor, MatX& Yt, MatX& SigmaYt) noexcept {
     Yt.setZero();
-    for (std::size_t i = 0; i < view.terms.size(); ++i) {
-        const int j = view.measurements[i].landmark;
-        Yt.block<3, ViewState::kDim>(3 * j, 0) =
-            reduced_rows(view, view.terms[i], X_target[static_cast<std::size_t>(j)]);
-    }
+    for (const PointTerm& term : view.terms)
+        Yt.block<3, ViewState::kDim>(3 * term.landmark, 0) +=
+            reduced_rows(view, term, X_target[static_cast<std::size_t>(term.landmark)]);
     for (Eigen::Index c = 0; c < ViewState::kDim; ++c) SigmaYt.col(c).noalias() = Sigma * Yt.col(c);
     StateMatrix inner = Yt.transpose() * SigmaYt;
-    inner.diagonal().array() += noise_factor;
+    inner.diagonal().array() += noise_factor * view.share;  // this one view errs as told, however alike its neighbours
     const StateMatrix covariance = view.L_inverse.transpose() * inner * view.L_inverse;
     return 0.5 * (covariance + covariance.transpose());
 }
@@ -64,11 +62,12 @@ void update_noise_factor(Problem& problem, double determined) noexcept {
     double freedom = -determined;
     for (const ViewBlock& view : problem.views) {
         squares += view.weighted_squares;
-        freedom += 2.0 * view.weights - ViewState::kDim;
+        freedom += 2.0 * view.weights - ViewState::kDim * view.share;
     }
-    if (problem.compressed) {
-        squares += problem.compressed->value(problem.X);
-        freedom += 2.0 * problem.compressed->weights() - ViewState::kDim * problem.compressed->views();
+    for (CompressedViews& views : problem.compressed) {
+        if (views.empty()) continue;
+        squares += views.value(problem.X);
+        freedom += 2.0 * views.weights() - ViewState::kDim * views.views();
     }
     squares = std::max(squares, 0.0) / gaussian_consistency(problem.loss.threshold);
     problem.noise_factor = (kNoiseBelief + squares) / (kNoiseBelief + std::max(freedom, 0.0));

@@ -30,9 +30,9 @@ StateByPoint reduced_rows(const ViewBlock& view, const PointTerm& term, const Ve
 
 StateVector back_substitute(const ViewBlock& view, std::span<const Vec3> X_target, const VecX& dX) noexcept {
     StateVector rhs = view.g;
-    for (std::size_t i = 0; i < view.terms.size(); ++i) {
-        const int j = view.measurements[i].landmark;
-        const Vec3 f = view.terms[i].M * dX.segment<3>(3 * j);
+    for (const PointTerm& term : view.terms) {
+        const int j = term.landmark;
+        const Vec3 f = term.M * dX.segment<3>(3 * j);
         rhs.head<3>() += f;
         rhs.tail<3>() += X_target[static_cast<std::size_t>(j)].cross(f);
     }
@@ -43,12 +43,11 @@ Eliminator::Eliminator(int landmarks) : Y_(3 * landmarks, kDim * kViews) {}
 
 void Eliminator::add(const ViewBlock& view, std::span<const Vec3> X_target, MatX& S, VecX& g) noexcept {
     const StateVector y = view.L_inverse * view.g;
-    for (std::size_t i = 0; i < view.terms.size(); ++i) {
-        const int j = view.measurements[i].landmark;
-        const PointTerm& term = view.terms[i];
+    for (const PointTerm& term : view.terms) {
+        const int j = term.landmark;
         const StateByPoint rows = reduced_rows(view, term, X_target[static_cast<std::size_t>(j)]);
         for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < kDim; ++c) Y_.at(3 * j + r, c) = rows(r, c);
+            for (int c = 0; c < kDim; ++c) Y_.at(3 * j + r, c) += rows(r, c);
         S.block<3, 3>(3 * j, 3 * j) += term.M;
         g.segment<3>(3 * j) += term.v - rows * y;
     }

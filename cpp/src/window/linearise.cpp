@@ -22,13 +22,43 @@ void accumulate_state(const PointTerm& term, const Vec3& X, StateMatrix& H, Stat
     g.tail<3>() += X.cross(term.v);
 }
 
+/// A range is a term of rank one. Its sigma is in metres and no part of the estimated noise of the pixels: `told` turns
+/// it into their units. It is believed: what to believe was decided by other readings, not by a pose that may be far
+/// off still.
+void linearise_ranges(std::span<const Vec3> X_target, double told, ViewBlock& view) noexcept {
+    const SE3& T = view.state.T_camera_target;
+    view.range_squares = 0.0;
+    for (std::size_t i = 0; i < view.ranges.size(); ++i) {
+        const RangeMeasurement& measurement = view.ranges[i];
+        const Vec3& X = X_target[static_cast<std::size_t>(measurement.landmark)];
+        const Vec3 p = T * X;
+        const double information = told / (measurement.sigma_m * measurement.sigma_m);
+        const double r = p.norm() - measurement.range_m;
+        const Vec3 B = T.R.transpose() * p.normalized();
+        PointTerm& term = view.terms[view.measurements.size() + i];
+        term = {measurement.landmark, information * B * B.transpose(), information * r * B};
+        accumulate_state(term, X, view.H, view.g);
+        view.range_squares += information * r * r;
+    }
+    view.cost += view.range_squares;
+}
+
+double range_cost(std::span<const Vec3> X_target, double told, const SE3& T, const ViewBlock& view) noexcept {
+    double cost = 0.0;
+    for (const RangeMeasurement& m : view.ranges)
+        cost +=
+            told * std::pow(((T * X_target[static_cast<std::size_t>(m.landmark)]).norm() - m.range_m) / m.sigma_m, 2);
+    return cost;
+}
+
 }  // namespace
 
-bool linearise(const Camera& camera, std::span<const Vec3> X_target, const Loss& loss, ViewBlock& view) noexcept {
+bool linearise(const Camera& camera, std::span<const Vec3> X_target, const Loss& loss, double noise_factor,
+               ViewBlock& view) noexcept {
     view.H.setZero();
     view.g.setZero();
     view.cost = view.weighted_squares = view.weights = 0.0;
-    view.terms.resize(view.measurements.size());
+    view.terms.resize(view.measurements.size() + view.ranges.size());
     const SE3& T = view.state.T_camera_target;
     int visible = 0;
     for (std::size_t i = 0; i < view.measurements.size(); ++i) {
@@ -38,8 +68,8 @@ bool linearise(const Camera& camera, std::span<const Vec3> X_target, const Loss&
         Vec2 z;
         Mat23 J;
         if (!camera.project(T * X, z, J)) {
-            term = PointTerm{};
-            view.cost += hidden_cost(loss);
+            term = PointTerm{.landmark = measurement.landmark};
+            view.cost += view.share * hidden_cost(loss);
             continue;
         }
         const Vec2 r = z - measurement.z;
@@ -47,30 +77,32 @@ bool linearise(const Camera& camera, std::span<const Vec3> X_target, const Loss&
         const double s = r.dot(weighted);
         const double w = loss.weight(s);
         const Mat23 B = J * T.R;
-        const Mat23 SB = w * (measurement.information * B);
+        const Mat23 SB = view.share * w * (measurement.information * B);
+        term.landmark = measurement.landmark;
         term.M.noalias() = B.transpose() * SB;
-        term.v.noalias() = w * (B.transpose() * weighted);
+        term.v.noalias() = view.share * w * (B.transpose() * weighted);
         accumulate_state(term, X, view.H, view.g);
-        view.cost += loss.rho(s);
-        view.weighted_squares += w * s;
-        view.weights += w;
+        view.cost += view.share * loss.rho(s);
+        view.weighted_squares += view.share * w * s;
+        view.weights += view.share * w;
         ++visible;
     }
+    linearise_ranges(X_target, noise_factor, view);
     view.H.topRightCorner<3, 3>() = view.H.bottomLeftCorner<3, 3>().transpose();
     return visible >= 3 && std::isfinite(view.cost) && view.H.allFinite();
 }
 
-double view_cost(const Camera& camera, std::span<const Vec3> X_target, const Loss& loss, const SE3& T_camera_target,
-                 const ViewBlock& view) noexcept {
-    double cost = 0.0;
+double view_cost(const Camera& camera, std::span<const Vec3> X_target, const Loss& loss, double noise_factor,
+                 const SE3& T_camera_target, const ViewBlock& view) noexcept {
+    double cost = range_cost(X_target, noise_factor, T_camera_target, view);
     for (const Measurement& measurement : view.measurements) {
         Vec2 z;
         if (!camera.project(T_camera_target * X_target[static_cast<std::size_t>(measurement.landmark)], z)) {
-            cost += hidden_cost(loss);
+            cost += view.share * hidden_cost(loss);
             continue;
         }
         const Vec2 r = z - measurement.z;
-        cost += loss.rho(r.dot(measurement.information * r));
+        cost += view.share * loss.rho(r.dot(measurement.information * r));
     }
     return cost;
 }

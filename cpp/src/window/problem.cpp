@@ -2,11 +2,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fairlead/window/problem.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace fairlead::window {
 namespace {
 
 Eigen::Map<const VecX> stacked(std::span<const Vec3> X) {
     return {X.data()->data(), 3 * static_cast<Eigen::Index>(X.size())};
+}
+
+void add(const CompressedViews& views, Workspace& workspace) noexcept {
+    workspace.S += views.hessian();
+    workspace.g += views.gradient();
+    workspace.D += views.hessian().diagonal();
+}
+
+double length_cost(std::span<const LengthMeasurement> lengths, std::span<const Vec3> X) noexcept {
+    double cost = 0.0;
+    for (const LengthMeasurement& m : lengths) {
+        const double d = (X[static_cast<std::size_t>(m.a)] - X[static_cast<std::size_t>(m.b)]).norm();
+        cost += std::pow((d - m.length_m) / m.sigma_m, 2);
+    }
+    return cost;
+}
+
+void add_lengths(std::span<const LengthMeasurement> lengths, std::span<const Vec3> X, Workspace& workspace) noexcept {
+    for (const LengthMeasurement& m : lengths) {
+        const Vec3 difference = X[static_cast<std::size_t>(m.a)] - X[static_cast<std::size_t>(m.b)];
+        const Vec3 J = difference.normalized() / m.sigma_m;
+        const double r = (difference.norm() - m.length_m) / m.sigma_m;
+        const Mat33 JJ = J * J.transpose();
+        const int a = 3 * m.a;
+        const int b = 3 * m.b;
+        workspace.S.block<3, 3>(a, a) += JJ;
+        workspace.S.block<3, 3>(b, b) += JJ;
+        workspace.S.block<3, 3>(std::max(a, b), std::min(a, b)) -= JJ;
+        workspace.g.segment<3>(a) += r * J;
+        workspace.g.segment<3>(b) -= r * J;
+        workspace.D.segment<3>(a) += JJ.diagonal();
+        workspace.D.segment<3>(b) += JJ.diagonal();
+    }
 }
 
 }  // namespace
@@ -23,9 +59,11 @@ Workspace::Workspace(int landmarks)
 
 double posterior_cost(Problem& problem, std::span<const Vec3> X, std::span<const SE3> T) noexcept {
     const Loss loss = problem.told_loss();
-    double data = problem.compressed ? problem.compressed->value(X) : 0.0;
+    double data = problem.path ? problem.path->value(X) : 0.0;
+    for (CompressedViews& views : problem.compressed)
+        if (!views.empty()) data += views.value(X);
     for (std::size_t k = 0; k < problem.views.size(); ++k)
-        data += view_cost(problem.camera, X, loss, T[k], problem.views[k]);
+        data += view_cost(problem.camera, X, loss, problem.noise_factor, T[k], problem.views[k]);
     double prior = 0.0;
     if (problem.prior) {
         const auto& information = problem.prior->information;
@@ -33,14 +71,17 @@ double posterior_cost(Problem& problem, std::span<const Vec3> X, std::span<const
         const auto& mean = problem.prior->mean;
         for (Eigen::Index c = 0; c < x.size(); ++c) prior += (x[c] - mean[c]) * information.col(c).dot(x - mean);
     }
+    prior += problem.prior_factors.believed * length_cost(problem.lengths, X);
     return 0.5 * (data / problem.noise_factor + prior / problem.prior_factors.believed);
 }
 
 bool linearise(Problem& problem) noexcept {
     const Loss loss = problem.told_loss();
     for (ViewBlock& view : problem.views)
-        if (!linearise(problem.camera, problem.X, loss, view)) return false;
-    if (problem.compressed) problem.compressed->linearise(problem.X);
+        if (!linearise(problem.camera, problem.X, loss, problem.noise_factor, view)) return false;
+    for (CompressedViews& views : problem.compressed)
+        if (!views.empty()) views.linearise(problem.X);
+    if (problem.path) problem.path->linearise(problem.X);
     return true;
 }
 
@@ -51,15 +92,12 @@ bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexc
     for (ViewBlock& view : problem.views) {
         if (!factor_state(damping, view)) return false;
         workspace.eliminator.add(view, problem.X, workspace.S, workspace.g);
-        for (std::size_t i = 0; i < view.terms.size(); ++i)
-            workspace.D.segment<3>(3 * view.measurements[i].landmark) += view.terms[i].M.diagonal();
+        for (const PointTerm& term : view.terms) workspace.D.segment<3>(3 * term.landmark) += term.M.diagonal();
     }
     workspace.eliminator.flush(workspace.S);
-    if (problem.compressed) {
-        workspace.S += problem.compressed->hessian();
-        workspace.g += problem.compressed->gradient();
-        workspace.D += problem.compressed->hessian().diagonal();
-    }
+    for (const CompressedViews& views : problem.compressed)
+        if (!views.empty()) add(views, workspace);
+    if (problem.path) add(*problem.path, workspace);
     return workspace.S.allFinite();
 }
 
@@ -68,6 +106,7 @@ void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Worksp
     workspace.S *= data_scale;
     workspace.g *= data_scale;
     workspace.D *= data_scale;
+    add_lengths(problem.lengths, X, workspace);
     if (!problem.prior) return;
     const double scale = 1.0 / problem.prior_factors.believed;
     workspace.S += scale * problem.prior->information;

@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(reduced_gradient_is_the_gradient_with_the_states_eliminated
         const Vec6 g = reduced.segment<6>(24 + 6 * static_cast<Eigen::Index>(k));
         BOOST_TEST((g - view.g / 1.7).norm() < 1e-4 * (1.0 + g.norm()));
         for (std::size_t i = 0; i < view.terms.size(); ++i) {
-            const int j = view.measurements[i].landmark;
+            const int j = view.terms[i].landmark;
             const Eigen::Matrix<double, 3, 6> Yt =
                 window::reduced_rows(view, view.terms[i], problem.X[static_cast<std::size_t>(j)]);
             reduced.segment<3>(3 * j) -= Yt * (view.L_inverse * g);

@@ -21,6 +21,8 @@ class Coast {
     [[nodiscard]] double age_s(std::int64_t stamp_ns) const noexcept {
         return 1e-9 * static_cast<double>(stamp_ns - stamp_ns_);
     }
+    /// d range / dt [m/s] as last seen over half a second.
+    [[nodiscard]] double range_rate() const noexcept { return range_rate_; }
     [[nodiscard]] const SE3& pose() const noexcept { return T_; }
     [[nodiscard]] Mat66 covariance(std::int64_t stamp_ns) const noexcept;
 
@@ -30,6 +32,7 @@ class Coast {
     Mat66 covariance_ = Mat66::Identity();
     std::int64_t reference_ns_ = 0;
     SE3 reference_;
+    double range_rate_ = 0.0;
     Mat66 rate_ = Mat66::Identity();  ///< E[v v^T]
 };
 

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 
+#include "fairlead/motion/tie.hpp"
+
 namespace fairlead {
 
 struct TrackerOptions {
     int max_views =
-        64;  ///< keyframes kept and relinearised; more cost time, fewer lose accuracy while the model is poor
+        256;  ///< keyframes kept and relinearised; more cost time, fewer lose accuracy while the model is poor
     double loss_threshold =
         9.21034037197618;  ///< [-] squared whitened residual where the robust loss turns; chi-square, 2 dof, 99 %
     double gate =
@@ -18,7 +20,11 @@ struct TrackerOptions {
     double max_step_rad = 1.5707963267948966;  ///< [rad] a larger turn between two views needs evidence
     int confirmations = 3;                     ///< views that must agree before such a step is believed
     double ambiguity_log_odds = 4.5;           ///< [nats] two poses closer than this are both kept
-    std::uint64_t seed = 0;                    ///< of the consensus search
+    motion::Kind motion = motion::Kind::none;  ///< what is smooth, docs/motion.md
+    double jerk_density_m_s25 = 0.5;           ///< [m/s^2.5] of its white jerk; told, then judged by the data
+    double correlation_time_s = 0.0;  ///< [s] over which detections err alike, so that many views say what one does
+    bool range_to_origin = false;     ///< readings of the range to the target's origin will come
+    std::uint64_t seed = 0;           ///< of the consensus search
 };
 
 /// Throws std::invalid_argument naming the option, what came and what was expected.

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "fairlead/motion/path.hpp"
+#include "fairlead/tracker/options.hpp"
 #include "fairlead/window/covariance.hpp"
 #include "fairlead/window/levenberg_marquardt.hpp"
 
@@ -25,25 +27,46 @@ struct Fusion {
 class Structure {
   public:
     /// Throws std::invalid_argument for a bad camera, prior or capacity.
-    Structure(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, int max_views, double loss_threshold);
+    Structure(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options);
+
+    void add_length(const window::LengthMeasurement& length) { problem_.lengths.push_back(length); }
+    /// From now on views may carry ranges: what is on the path keeps its scale.
+    void expect_ranges();
+    /// The next view is not a continuation of the last.
+    void interrupt() noexcept;
 
     /// Joint estimate of X and this view's pose, starting from T_start; the view stays in the window or is compressed.
     /// Allocates nothing.
-    [[nodiscard]] Fusion fuse(std::int64_t stamp_ns, const SE3& T_start,
-                              std::span<const Observation> observations) noexcept;
+    [[nodiscard]] Fusion fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<const Observation> observations,
+                              std::span<const window::RangeMeasurement> ranges,
+                              const std::optional<motion::Attitude>& attitude) noexcept;
 
     [[nodiscard]] std::span<const Vec3> landmarks() const noexcept { return problem_.X; }
     [[nodiscard]] std::span<const Mat33> landmark_covariances() const noexcept { return blocks_; }
     /// What is reported of the model: the covariance with the curvature of its gauge.
     [[nodiscard]] MatX covariance() const;
+    [[nodiscard]] const MatX& covariance_linear() const noexcept { return Sigma_; }
+    [[nodiscard]] std::vector<Vec3> landmarks_told() const;
+    [[nodiscard]] MatX covariance_told() const { return problem_.prior->information.inverse(); }
+    [[nodiscard]] double determined_directions() const noexcept { return determined_; }
     [[nodiscard]] double noise_factor() const noexcept { return problem_.noise_factor; }
     [[nodiscard]] double prior_factor() const noexcept { return problem_.prior_factors.likely; }
+    /// d range / dt [m/s] where a motion prior tells it.
+    [[nodiscard]] std::optional<double> range_rate() const noexcept;
     [[nodiscard]] int views() const noexcept { return static_cast<int>(problem_.views.size()); }
 
   private:
+    static constexpr std::size_t kFewViews = 16;  ///< windows this small are always solved anew
+    [[nodiscard]] window::ViewBlock make_view(std::int64_t stamp_ns, const SE3& T_start,
+                                              std::span<const Observation> observations,
+                                              std::span<const window::RangeMeasurement> ranges) noexcept;
+    [[nodiscard]] bool settle_newest(double error) noexcept;
+    void settle_on_path(double error) noexcept;
     bool join_newest() noexcept;
     bool newest_system(double mu) noexcept;
-    bool relinearise(double widest) noexcept;
+    bool relinearise(double error) noexcept;
+    bool solve_window(double widest) noexcept;
+    bool follow_model() noexcept;
     void absorb_newest() noexcept;
     void spare_one() noexcept;
     void retire(std::size_t index) noexcept;
@@ -56,6 +79,14 @@ class Structure {
     std::vector<window::ViewBlock> pool_;
     std::vector<Eigen::Vector4d> descriptors_;
     double radius_ = 1.0;
+    motion::Kind kind_;
+    double jerk_density_, correlation_time_s_;
+    std::optional<motion::Path> path_;
+    window::Gauge path_gauge_ = window::Gauge::similarity;
+    bool stale_ = false;    ///< the window must be linearised anew
+    bool on_path_ = false;  ///< whether the newest view is
+    std::int64_t last_ns_ = 0;
+    bool continued_ = false;
 
     // The quadratic of all but the newest view, told units, gradient at X_data_; its views were linearised at
     // X_window_.

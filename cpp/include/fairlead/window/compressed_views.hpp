@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "fairlead/window/similarity.hpp"
+#include "fairlead/window/slice.hpp"
 #include "fairlead/window/state.hpp"
 
 namespace fairlead::window {
@@ -15,13 +15,18 @@ namespace fairlead::window {
 /// A view with its pose eliminated is a quadratic in the model with a null space of seven directions N(X), which turns
 /// with X. Sums of quadratics taken at different X would lose it and invent knowledge of the model's orientation. So
 /// the sum is kept in the shape y = S(X) X, the model aligned onto the first one: E(X) = 1/2 u^T Lambda u - eta^T u +
-/// c, u = y(X) - X_ref, docs/estimator.md eq. (11). It is invariant under every similarity of X, exactly and for ever.
+/// c, u = y(X) - X_ref, docs/estimator.md eq. (11). It is invariant under the gauge of X, exactly and for ever.
 class CompressedViews {
   public:
-    explicit CompressedViews(std::span<const Vec3> X_ref);
+    CompressedViews(std::span<const Vec3> X_ref, Gauge gauge);
 
     /// Takes a view linearised at X (told covariances, robust weights frozen) with its state factored.
     void add(const ViewBlock& view, std::span<const Vec3> X) noexcept;
+
+    /// Holds scale * (u^T Lambda u - 2 eta^T u) and nothing else.
+    void replace(const MatX& Lambda, const VecX& eta, double scale) noexcept;
+    /// Adds the same.
+    void add(const MatX& Lambda, const VecX& eta, double scale) noexcept;
 
     /// Hessian (both triangles) and gradient with respect to X, value at X; all twice-negative-log units of sum rho,
     /// i.e. E = value / 2.
@@ -30,24 +35,21 @@ class CompressedViews {
 
     [[nodiscard]] const MatX& hessian() const noexcept { return hessian_; }
     [[nodiscard]] const VecX& gradient() const noexcept { return gradient_; }
-    [[nodiscard]] int views() const noexcept { return views_; }
+    [[nodiscard]] double views() const noexcept { return views_; }  ///< sum of their shares
+    [[nodiscard]] bool empty() const noexcept { return empty_; }
     [[nodiscard]] double weights() const noexcept { return weights_; }
 
   private:
-    void shape(std::span<const Vec3> X, const Similarity& S) noexcept;
-
-    std::vector<Vec3> X_ref_;
-    double radius_ = 1.0;
+    Slice slice_;
     MatX Lambda_;
     VecX eta_;
     double constant_ = 0.0;
-    int views_ = 0;
+    double views_ = 0.0;
+    bool empty_ = true;
     double weights_ = 0.0;
 
     MatX hessian_, A_;
-    VecX gradient_, u_, q_;
-    std::vector<Vec3> y_;
-    GaugeBasis N_, N_ref_, LambdaN_, U_t_;
+    VecX gradient_, q_;
 };
 
 }  // namespace fairlead::window

@@ -14,12 +14,22 @@
 
 namespace fairlead::window {
 
+/// A measured distance between two landmarks, |X_a - X_b|.
+struct LengthMeasurement {
+    int a = -1, b = -1;
+    double length_m = 0.0;
+    double sigma_m = 1.0;
+};
+
 /// The negative log posterior of landmarks X and view states T_k, docs/estimator.md eq. (1) and (3):
-///   E = 1/2 [ (sum_k sum_j rho(s_kj) + compressed views) / noise_factor + (X - X0)^T P0^-1 (X - X0) / believed ].
+///   E = 1/2 [ (sum_k sum_j rho(s_kj) + compressed views) / noise_factor + (X - X0)^T P0^-1 (X - X0) / believed
+///             + sum of known distances ((|X_a - X_b| - length) / sigma)^2 ].
 struct Problem {
     Camera camera;
     std::optional<LandmarkPrior> prior;
-    std::optional<CompressedViews> compressed;
+    std::vector<CompressedViews> compressed;  ///< views that left the window, by their gauge
+    std::optional<CompressedViews> path;      ///< what a motion prior makes of the views on it, without their motion
+    std::vector<LengthMeasurement> lengths;
     std::vector<Vec3> X;  ///< landmarks, target frame [m]
     std::vector<ViewBlock> views;
     double noise_factor = 1.0;   ///< multiplies every told covariance
@@ -56,7 +66,7 @@ struct Workspace {
 /// a state is singular.
 [[nodiscard]] bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexcept;
 
-/// Divides the data's part by the noise factor and adds the prior at X: the system of E itself.
+/// Divides the data's part by the noise factor and adds the prior and the known distances at X: the system of E itself.
 void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Workspace& workspace) noexcept;
 
 }  // namespace fairlead::window

@@ -28,29 +28,45 @@ struct Measurement {
     Mat22 information = Mat22::Identity();  ///< S^-1 [1/px^2]
 };
 
-/// One measurement linearised at (T, X); B = d pi / d X_target (2 x 3), docs/estimator.md eq. (5).
+/// A measured distance from the camera to a landmark, |T X_j|.
+struct RangeMeasurement {
+    int landmark = -1;
+    double range_m = 0.0;
+    double sigma_m = 1.0;
+};
+
+/// One measurement of a landmark linearised at (T, X): whatever it measures, it depends on T X_j alone, so that B = d h
+/// / d X_target is all there is to know, docs/estimator.md eq. (5).
 struct PointTerm {
+    int landmark = -1;
     Mat33 M = Mat33::Zero();  ///< w B^T S^-1 B, the landmark's own information
     Vec3 v = Vec3::Zero();    ///< w B^T S^-1 r, the gradient with respect to the landmark
 };
 
 /// One view: state, measurements, and their linearisation. Sized once; never grows beyond the number of landmarks.
 struct ViewBlock {
+    static constexpr std::size_t kMaxRanges = 4;
+
     std::int64_t stamp_ns = 0;
     ViewState state;
     std::vector<Measurement> measurements;
 
-    std::vector<PointTerm> terms;                 ///< one per measurement
+    std::vector<RangeMeasurement> ranges;
+    double share = 1.0;  ///< of what an independent view would say: less where errors are alike in neighbouring views
+
+    std::vector<PointTerm> terms;                 ///< one per measurement, pixels first
     StateMatrix H = StateMatrix::Zero();          ///< Hessian of the state alone
     StateVector g = StateVector::Zero();          ///< its gradient
     StateMatrix L_inverse = StateMatrix::Zero();  ///< inverse Cholesky factor of the (damped) H
-    double cost = 0.0;                            ///< sum rho(s)
-    double weighted_squares = 0.0;                ///< sum w s
-    double weights = 0.0;                         ///< sum w
+    double cost = 0.0;                            ///< sum rho(s), ranges included
+    double weighted_squares = 0.0;                ///< sum w s, over the pixels
+    double range_squares = 0.0;                   ///< the same over the ranges
+    double weights = 0.0;                         ///< sum w, over the pixels; both times `share`
 
     explicit ViewBlock(int max_landmarks = 0) {
         measurements.reserve(static_cast<std::size_t>(max_landmarks));
-        terms.reserve(static_cast<std::size_t>(max_landmarks));
+        ranges.reserve(kMaxRanges);
+        terms.reserve(static_cast<std::size_t>(max_landmarks) + kMaxRanges);
     }
 };
 

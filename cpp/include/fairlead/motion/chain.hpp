@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "fairlead/motion/tie.hpp"
+#include "fairlead/motion/white_jerk.hpp"
+#include "fairlead/window/state.hpp"
+
+namespace fairlead::motion {
+
+/// All views on a smooth path so far, as one quadratic in the aligned shape u of the model and the aligned motion n =
+/// (p, v, a) of the present moment,
+///   E = 1/2 [u; n]^T Lambda [u; n] - eta^T [u; n],
+/// earlier motion integrated out, docs/motion.md eq. (7)-(9). No function of it changes along the gauge of the model.
+class Chain {
+  public:
+    Chain(std::span<const Vec3> X_ref, window::Gauge gauge, int axes);
+
+    /// Forgets the motion, keeps what is known of the shape.
+    void restart() noexcept;
+    /// The motion dt > 0 later.
+    void predict(double dt, double density) noexcept;
+    /// Brings the slice to X, which the functions below then mean.
+    void set_model(std::span<const Vec3> X) noexcept;
+    /// Most likely motion for that model.
+    [[nodiscard]] State expected_motion() const noexcept;
+    /// Gradient with respect to the motion alone; its Hessian is motion_information().
+    [[nodiscard]] State motion_gradient(const State& n) const noexcept;
+    [[nodiscard]] const StateSquare& motion_information() const noexcept { return nn_; }
+
+    /// Derivatives at that model and n; both triangles.
+    void linearise(const State& n) noexcept;
+
+    /// Takes in a view with its pose eliminated: A (dX dX), B (dX dn), C (dn dn) and gradients at that model and n.
+    void absorb(const MatX& A, const Eigen::Ref<const MatX>& B, const StateSquare& C, const VecX& g_X, const State& g_n,
+                const State& n) noexcept;
+
+    /// The shape alone, motion integrated out.
+    void marginal(MatX& Lambda, VecX& eta) noexcept;
+
+    [[nodiscard]] int states() const noexcept { return 3 * axes_; }
+    [[nodiscard]] const window::Slice& slice() const noexcept { return slice_; }
+    [[nodiscard]] const window::GaugeBasis& gauge_rate_t() const noexcept { return rate_t_; }
+
+    MatX H_XX, H_Xn;  ///< written by linearise()
+    VecX g_X;
+
+  private:
+    int axes_;
+    window::Slice slice_;
+    window::GaugeBasis rate_t_;
+    MatX yy_, yn_;
+    StateSquare nn_;
+    VecX eta_y_;
+    State eta_n_;
+    MatX scratch_, wide_;
+};
+
+}  // namespace fairlead::motion

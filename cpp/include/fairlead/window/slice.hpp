@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fairlead/window/similarity.hpp"
+
+namespace fairlead::window {
+
+/// What images leave free of the model: its similarity, or its rigid motion where something measured a length.
+enum class Gauge { similarity, rigid };
+
+/// The shape of a model: y = S(X) X, aligned onto a reference by the gauge S that makes N_ref^T (y - X_ref) = 0. A
+/// function of y does not change along the gauge, docs/estimator.md eq. (11)-(12). All memory is taken at construction.
+class Slice {
+  public:
+    Slice(std::span<const Vec3> X_ref, Gauge gauge);
+
+    /// y and u = y - X_ref of a model, without derivatives.
+    void align(std::span<const Vec3> X) noexcept;
+    /// The same with what the functions below need.
+    void linearise(std::span<const Vec3> X) noexcept;
+
+    [[nodiscard]] const VecX& u() const noexcept { return u_; }
+    [[nodiscard]] const Similarity& similarity() const noexcept { return S_; }
+    [[nodiscard]] double radius() const noexcept { return radius_; }
+    [[nodiscard]] Vec3 centre() const noexcept;  ///< of y
+
+    /// d E / d X from d E / d y, column by column, in place: (s R)^T P^T C with the oblique projector P.
+    template <typename Columns>
+    void pull_back(Eigen::MatrixBase<Columns>& C) noexcept;
+    /// d^2 E / d X^2 from A = d^2 E / d y^2, both symmetric and full; A is scratch afterwards.
+    void pull_back(MatX& A, MatX& H) noexcept;
+    /// d gamma / d X (7 x 3N) of the gauge S = Exp(gamma) S in the basis N(y), transposed: -(s R)^T U^T.
+    void gauge_rate(GaugeBasis& rate_t) const noexcept;
+
+  private:
+    Gauge gauge_;
+    std::vector<Vec3> X_ref_, y_;
+    double radius_ = 1.0;
+    Similarity S_;
+    VecX u_;
+    GaugeBasis N_, N_ref_, U_t_, AN_;
+};
+
+template <typename Columns>
+void Slice::pull_back(Eigen::MatrixBase<Columns>& C) noexcept {
+    const Mat33 sR_t = (S_.s * S_.R).transpose();
+    for (Eigen::Index c = 0; c < C.cols(); ++c) {
+        const Eigen::Matrix<double, 7, 1> along = N_.transpose() * C.col(c);
+        C.col(c).noalias() -= U_t_ * along;
+        for (Eigen::Index j = 0; j < C.rows(); j += 3)
+            C.col(c).template segment<3>(j) = (sR_t * C.col(c).template segment<3>(j)).eval();
+    }
+}
+
+}  // namespace fairlead::window

@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#include "fairlead/motion/path.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace fairlead::motion {
+namespace {
+
+constexpr double kMaxInterval = 10.0;    // [s] without a view after which the motion begins anew
+constexpr std::size_t kKept = 1024;      // views of the past that are gone through again
+constexpr std::size_t kLookedBack = 32;  // of them in an update, backwards
+constexpr std::size_t kRetraced = 6;     // of them in an update
+constexpr int kPoseIterations = 2;
+
+}  // namespace
+
+Path::Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge gauge)
+    : kind_(kind),
+      axes_(axes_of(kind)),
+      chain_(X_ref, gauge, axes_),
+      base_(chain_),
+      anew_(chain_),
+      past_(kKept),
+      bank_(density, axes_),
+      tie_(static_cast<int>(X_ref.size())) {
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref.size());
+    const Eigen::Index joint = 6 + chain_.states();
+    for (MatX* matrix : {&rows_t_, &Y_t_, &SigmaY_t_}) matrix->setZero(n, joint);
+    A_.setZero(n, n);
+    b_.setZero(n);
+    n_.setZero(chain_.states());
+    y_.setZero(joint);
+    L_inverse_.setIdentity(joint, joint);
+    for (Past& past : past_) {
+        past.view = window::ViewBlock(static_cast<int>(X_ref.size()));
+        past.later_information.setZero(chain_.states(), chain_.states());
+        past.later.setZero(chain_.states());
+    }
+}
+
+void Path::restart() noexcept {
+    chain_.restart();
+    base_ = anew_ = chain_;
+    kept_ = retraced_ = to_look_back_ = 0;
+    bank_.restart();
+    started_ = false;
+}
+
+void Path::advance(std::int64_t stamp_ns, std::span<const Vec3> X, const std::optional<Attitude>& attitude) noexcept {
+    interval_s_ = started_ ? 1e-9 * static_cast<double>(stamp_ns - stamp_ns_) : 0.0;
+    if (interval_s_ > kMaxInterval) {
+        restart();
+        interval_s_ = 0.0;
+    }
+    density_ = bank_.density();
+    if (interval_s_ > 0.0) chain_.predict(interval_s_, density_);
+    stamp_ns_ = stamp_ns;
+    started_ = true;
+    attitude_ = attitude;
+    chain_.set_model(X);
+    n_ = chain_.expected_motion();
+}
+
+void Path::tie(const Chain& chain, const SE3& T, std::span<const Vec3> X, const std::optional<Attitude>& attitude,
+               const State& n) noexcept {
+    tied_ = measure(kind_, T, X, chain.slice(), chain.gauge_rate_t(), attitude, tie_);
+    residual_.setZero();
+    if (tied_) residual_.head(axes_) = tie_.value.head(axes_) - n.head(axes_);
+}
+
+void Path::motion_system(const Chain& chain, const window::ViewBlock& view, double noise_factor, const State& n,
+                         JointSquare& H, Joint& h) const noexcept {
+    const Eigen::Index states = chain.states();
+    H.setZero(6 + states, 6 + states);
+    h.resize(6 + states);
+    H.topLeftCorner<6, 6>() = view.H / noise_factor;
+    H.bottomRightCorner(states, states) = chain.motion_information();
+    h << view.g / noise_factor, chain.motion_gradient(n);
+    if (!tied_) return;
+    const Mat33& W = tie_.information;
+    const Eigen::Matrix<double, 3, 6> WJ = W * tie_.J_pose;
+    H.topLeftCorner<6, 6>() += tie_.J_pose.transpose() * WJ;
+    H.block(0, 6, 6, axes_) -= WJ.topRows(axes_).transpose();
+    H.block(6, 0, axes_, 6) -= WJ.topRows(axes_);
+    H.block(6, 6, axes_, axes_) += W.topLeftCorner(axes_, axes_);
+    h.head<6>() += WJ.transpose() * residual_;
+    h.segment(6, axes_) -= (W * residual_).head(axes_);
+}
+
+/// The view's own terms and its tie to the path: into S and g what concerns the structure, into rows_t_ its coupling to
+/// the pose.
+void Path::add_view(const window::ViewBlock& view, std::span<const Vec3> X, double noise_factor, MatX& S,
+                    VecX& g) noexcept {
+    const double scale = 1.0 / noise_factor;
+    for (const window::PointTerm& term : view.terms) {
+        const Eigen::Index row = 3 * term.landmark;
+        const Mat33 M = scale * term.M;
+        rows_t_.block<3, 3>(row, 0) += M;
+        rows_t_.block<3, 3>(row, 3) -= M * so3::hat(X[static_cast<std::size_t>(term.landmark)]);
+        S.block<3, 3>(row, row) += M;
+        g.segment<3>(row) += scale * term.v;
+    }
+    if (!tied_) return;
+    const Eigen::Matrix<double, 3, 6> WJ = tie_.information * tie_.J_pose;
+    rows_t_.leftCols<6>().noalias() += tie_.J_X_t * WJ;
+    Y_t_.leftCols<3>().noalias() = tie_.J_X_t * tie_.information;  // scratch
+    S.noalias() += Y_t_.leftCols<3>() * tie_.J_X_t.transpose();
+    g.noalias() += Y_t_.leftCols<3>() * residual_;
+}
+
+bool Path::join(const window::ViewBlock& view, std::span<const Vec3> X, double noise_factor, MatX& S,
+                VecX& g) noexcept {
+    chain_.set_model(X);
+    chain_.linearise(n_);
+    tie(chain_, view.state.T_camera_target, X, attitude_, n_);
+    JointSquare H;
+    Joint h;
+    motion_system(chain_, view, noise_factor, n_, H, h);
+    rows_t_.setZero();
+    rows_t_.rightCols(chain_.states()) = chain_.H_Xn;
+    if (tied_) rows_t_.middleCols(6, axes_).noalias() -= tie_.J_X_t * tie_.information.leftCols(axes_);
+    S += chain_.H_XX;
+    g += chain_.g_X;
+    add_view(view, X, noise_factor, S, g);
+
+    const Eigen::LLT<JointSquare> llt(H);
+    if (llt.info() != Eigen::Success) return false;
+    L_inverse_.setIdentity();
+    llt.matrixL().solveInPlace(L_inverse_);
+    y_ = L_inverse_ * h;
+    Y_t_.noalias() = rows_t_ * L_inverse_.transpose();
+    S.noalias() -= Y_t_ * Y_t_.transpose();
+    g.noalias() -= Y_t_ * y_;
+    return L_inverse_.allFinite();
+}
+
+Vec6 Path::step(const VecX& dX) noexcept {
+    const Joint d = -(L_inverse_.transpose() * (y_ + Y_t_.transpose() * dX));
+    n_ += d.tail(chain_.states());
+    return d.head<6>();
+}
+
+Mat66 Path::covariance(const window::ViewBlock& view, double noise_factor, const MatX& Sigma) noexcept {
+    SigmaY_t_.noalias() = Sigma * Y_t_;
+    JointSquare inner = Y_t_.transpose() * SigmaY_t_;
+    inner.diagonal().array() += 1.0;
+    const JointSquare joint = L_inverse_.transpose() * inner * L_inverse_;
+    // This one view errs as told, however alike its neighbours: docs/motion.md eq. (13).
+    const Mat66 alone = (L_inverse_.transpose() * L_inverse_).topLeftCorner<6, 6>();
+    const Mat66 covariance = joint.topLeftCorner<6, 6>() - ((1.0 - view.share) / noise_factor) * alone * view.H * alone;
+    return 0.5 * (covariance + covariance.transpose());
+}
+
+/// The view with its pose eliminated into the chain, at the tie as last measured.
+void Path::absorb(Chain& chain, const window::ViewBlock& view, std::span<const Vec3> X, double noise_factor,
+                  const State& n) noexcept {
+    if (!tied_) return;
+    const Mat33& W = tie_.information;
+    const Eigen::Matrix<double, 3, 6> WJ = W * tie_.J_pose;
+    const Mat66 H = view.H / noise_factor + tie_.J_pose.transpose() * WJ;
+    const Vec6 h = view.g / noise_factor + WJ.transpose() * residual_;
+    const Eigen::LLT<Mat66> llt(H);
+    if (llt.info() != Eigen::Success) return;
+    A_.setZero();
+    b_.setZero();
+    rows_t_.setZero();
+    add_view(view, X, noise_factor, A_, b_);
+    Mat66 L_inverse = Mat66::Identity();
+    llt.matrixL().solveInPlace(L_inverse);
+    Y_t_.leftCols<6>().noalias() = rows_t_.leftCols<6>() * L_inverse.transpose();
+    const Vec6 y = L_inverse * h;
+    A_.noalias() -= Y_t_.leftCols<6>() * Y_t_.leftCols<6>().transpose();
+    b_.noalias() -= Y_t_.leftCols<6>() * y;
+    // Of the motion only the position is coupled, by -W.
+    const Eigen::Matrix<double, 6, 3> Z = -L_inverse * WJ.transpose();
+    StateSquare C = StateSquare::Zero(chain.states(), chain.states());
+    State c = State::Zero(chain.states());
+    C.topLeftCorner(axes_, axes_) = (W - Z.transpose() * Z).topLeftCorner(axes_, axes_);
+    c.head(axes_) = (-(W * residual_) - Z.transpose() * y).head(axes_);
+    SigmaY_t_.setZero();
+    SigmaY_t_.leftCols(axes_).noalias() = -tie_.J_X_t * W.leftCols(axes_);
+    SigmaY_t_.leftCols(axes_).noalias() -= Y_t_.leftCols<6>() * Z.leftCols(axes_);
+    chain.absorb(A_, SigmaY_t_.leftCols(chain.states()), C, b_, c, n);
+}
+
+double Path::range_rate() const noexcept {
+    if (kind_ == Kind::range) return n_[1] / chain_.slice().similarity().s;
+    Vec3 away = n_.head<3>();
+    if (kind_ == Kind::target) away -= chain_.slice().centre();
+    return away.normalized().dot(n_.segment<3>(3)) / chain_.slice().similarity().s;
+}
+
+bool Path::own_position(const window::ViewBlock& view, double noise_factor, Vec3& position,
+                        Mat33& covariance) const noexcept {
+    const Eigen::LLT<Mat66> llt(view.H);
+    if (!tied_ || llt.info() != Eigen::Success) return false;
+    position = tie_.value - tie_.J_pose * llt.solve(view.g);
+    const Eigen::Matrix<double, 6, 3> spread = llt.solve(tie_.J_pose.transpose());
+    covariance = noise_factor * tie_.J_pose * spread;
+    return true;
+}
+
+/// One view of the past into a chain: its pose and motion fitted to the model as it is now and to the views before and
+/// after it, then absorbed. A view linearised at its own noise, or at what only earlier views say, would claim to know
+/// the model.
+void Path::retrace(Chain& chain, Past& past, const window::Problem& problem) noexcept {
+    if (past.interval_s > 0.0) chain.predict(past.interval_s, past.density);
+    State n = chain.expected_motion();
+    SE3& T = past.view.state.T_camera_target;
+    for (int iteration = 0;; ++iteration) {
+        if (!window::linearise(problem.camera, problem.X, problem.told_loss(), problem.noise_factor, past.view)) return;
+        tie(chain, T, problem.X, past.attitude, n);
+        if (iteration == kPoseIterations) break;
+        JointSquare H;
+        Joint h;
+        motion_system(chain, past.view, problem.noise_factor, n, H, h);
+        H.bottomRightCorner(chain.states(), chain.states()) += past.later_information;
+        h.tail(chain.states()) += past.later_information * n - past.later;
+        const Eigen::LLT<JointSquare> llt(H);
+        const Joint step = -llt.solve(h);
+        if (llt.info() != Eigen::Success || !step.allFinite()) return;
+        T = perturb(T, Vec6(step.head<6>()));
+        n += step.tail(chain.states());
+    }
+    Mat33 covariance;
+    past.information.setZero();
+    if (own_position(past.view, problem.noise_factor, past.position, covariance))
+        past.information.topLeftCorner(axes_, axes_) =
+            StateSquare(covariance.topLeftCorner(axes_, axes_)).llt().solve(StateSquare::Identity(axes_, axes_));
+    absorb(chain, past.view, problem.X, problem.noise_factor, n);
+}
+
+/// What view i and those after it say of the motion at view i - 1: an information filter against time.
+void Path::look_back(std::size_t i) noexcept {
+    const Past& here = past(i);
+    Past& before = past(i - 1);
+    StateSquare J = here.later_information;
+    State j = here.later;
+    J.topLeftCorner(axes_, axes_) += here.information.topLeftCorner(axes_, axes_);
+    j.head(axes_) += (here.information * here.position).head(axes_);
+    if (!(here.interval_s > 0.0)) return;
+    const StateSquare L = noise_factor(here.interval_s, here.density, axes_);
+    const StateSquare Phi = transition(here.interval_s, axes_);
+    const StateSquare JL = J * L;
+    const Eigen::LLT<StateSquare> llt(StateSquare::Identity(3 * axes_, 3 * axes_) + L.transpose() * JL);
+    J -= JL * llt.solve(JL.transpose());
+    j -= JL * llt.solve(L.transpose() * j);
+    before.later_information = Phi.transpose() * J * Phi;
+    before.later = Phi.transpose() * j;
+}
+
+/// Forwards with the model as it is now; then back, so that the next time forwards every view knows of those after it.
+void Path::go_through_some(const window::Problem& problem) noexcept {
+    for (std::size_t i = 0; i < kLookedBack && to_look_back_ > 1; ++i) look_back(--to_look_back_);
+    if (to_look_back_ > 1) return;
+    anew_.set_model(problem.X);
+    for (std::size_t i = 0; i < kRetraced && retraced_ < kept_; ++i) retrace(anew_, past(retraced_++), problem);
+    if (retraced_ < kept_) return;
+    std::swap(chain_, anew_);
+    anew_ = base_;
+    retraced_ = 0;
+    to_look_back_ = kept_;
+}
+
+/// Puts the view in the place of a free block of the past; the oldest makes room.
+void Path::keep(window::ViewBlock& view, const window::Problem& problem) noexcept {
+    if (kept_ == past_.size()) {
+        base_.set_model(problem.X);
+        retrace(base_, past(0), problem);
+        first_ = (first_ + 1) % past_.size();
+        --kept_;
+        to_look_back_ -= to_look_back_ > 0 ? 1 : 0;
+        if (retraced_ > 0)
+            --retraced_;
+        else
+            anew_ = base_;
+    }
+    Past& slot = past(kept_++);
+    std::swap(slot.view, view);
+    slot.interval_s = interval_s_;
+    slot.density = density_;
+    slot.attitude = attitude_;
+    slot.later_information.setZero();
+    slot.later.setZero();
+}
+
+window::ViewBlock Path::settle(window::ViewBlock&& view, const window::Problem& problem) noexcept {
+    Vec3 position;
+    Mat33 covariance;
+    if (own_position(view, problem.noise_factor, position, covariance))
+        bank_.observe(interval_s_, position, covariance);
+    absorb(chain_, view, problem.X, problem.noise_factor, n_);
+    keep(view, problem);
+    go_through_some(problem);
+    return std::move(view);
+}
+
+}  // namespace fairlead::motion
