@@ -44,7 +44,7 @@ def test_map_is_below_epnp_and_not_above_the_window(sweep, setting):
 
 
 def test_the_free_window_breaks_at_two_pixels(sweep):
-    """Five damped steps from EPnP: the model gains at 1 px, nothing at 2 px, and loses beyond, as the rotation does."""
+    """Five damped steps from EPnP: the model gains at 1 px, nothing at 2 px; beyond, it and the rotation lose."""
     assert ratio(sweep["1 px"], "window-5", "epnp", "landmark_m").high < 0.8
     assert 0.8 < ratio(sweep["2 px"], "window-5", "epnp", "landmark_m").ratio < 1.25
     assert ratio(sweep["4 px"], "window-5", "epnp", "landmark_m").low > 1.3
@@ -58,7 +58,7 @@ def test_a_few_degrees_are_of_no_use_to_it(sweep):
 
 @pytest.mark.parametrize("setting", ["0.5 px", "1 px", "2 px", "4 px", "5 deg"])
 def test_the_covariance_is_true(sweep, setting):
-    """The views of a run share the model's error: 60 runs of 6 degrees of freedom scatter by 7.5 %, three times that."""
+    """The views of a run share the error of the model: 60 runs of 6 dof scatter by 7.5 %; three times that."""
     for name in ("map", "online"):
         assert 0.78 < np.nanmean(sweep[setting][name]["pose_nees"]) < 1.25, name
         assert 0.8 < np.nanmean(sweep[setting][name]["landmark_nees"]) < 1.25, name

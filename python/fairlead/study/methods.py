@@ -101,25 +101,18 @@ class Solver:
     """The flights of a block in the core, to be solved by one method after the other."""
 
     def __init__(self, block: FlightBlock, T_start: RunPoses) -> None:
-        r, k, n, _ = block.pixels.shape
-        self._shape = (r, k, n)
-        covariances = block.setting.scenario.observation.told_covariances(n)
-        self._core = _core.Flights(
-            core_camera(block.camera),
-            _each(block.X_true, r),
-            block.X0,
-            block.P0,
-            block.stamps_ns,
-            _each(block.T_true, r),
-            T_start,
-            block.pixels,
-            np.ascontiguousarray(np.broadcast_to(covariances, (r, k, n, 2, 2))),
-        )
+        self._flights = _core_flights(block, T_start, len(block.runs))
+        self._shape = block.pixels.shape
+        # The bound depends on the truth, on P0 and on what is seen: if all runs share them, one evaluation serves all.
+        alike = bool(np.ptp(block.P0, axis=0).max() == 0.0) and bool(np.isfinite(block.pixels).all())
+        self._one = _core_flights(block, T_start, 1) if alike else None
 
     def solve(self, method: Method, threads: int) -> Answers:
         """Answers of one method; they do not depend on the number of threads."""
-        T, S, X, P, counts = self._core.solve(method.solver, method.free.to_core(), TrackerOptions().to_core(), threads)
-        r, k, n = self._shape
+        r, k, n, _ = self._shape
+        flights = self._flights if method.solver != "bound" or self._one is None else self._one
+        rows = flights.solve(method.solver, method.free.to_core(), TrackerOptions().to_core(), threads)
+        T, S, X, P, counts = (np.repeat(each, r, axis=0) if flights is self._one else each for each in rows)
         return Answers(
             T_camera_target=T.reshape(r, k, 4, 4),
             covariances=S.reshape(r, k, 6, 6),
@@ -128,6 +121,23 @@ class Solver:
             iterations=counts[:, 0],
             seconds=counts[:, 1],
         )
+
+
+def _core_flights(block: FlightBlock, T_start: RunPoses, runs: int) -> _core.Flights:
+    """The first runs of a block."""
+    _, k, n, _ = block.pixels.shape
+    covariances = block.setting.scenario.observation.told_covariances(n)
+    return _core.Flights(
+        core_camera(block.camera),
+        _each(block.X_true, runs),
+        block.X0[:runs],
+        block.P0[:runs],
+        block.stamps_ns,
+        _each(block.T_true, runs),
+        T_start[:runs],
+        block.pixels[:runs],
+        np.ascontiguousarray(np.broadcast_to(covariances, (runs, k, n, 2, 2))),
+    )
 
 
 def _each(one: np.ndarray, runs: int) -> np.ndarray:

@@ -120,11 +120,20 @@ def normalised_squares(errors: np.ndarray, covariances: np.ndarray) -> np.ndarra
         sigma = np.sqrt(np.diagonal(covariances, axis1=1, axis2=2))
         correlations = covariances / (sigma[:, :, None] * sigma[:, None, :])
     usable = np.flatnonzero(np.isfinite(correlations).all(axis=(1, 2)))
-    usable = usable[np.linalg.eigvalsh(correlations[usable])[:, 0] > 0.0]
+    usable = usable[_positive_definite(correlations[usable])]
     scaled = errors[usable] / sigma[usable]
     squares = np.full(len(errors), np.nan)
     squares[usable] = np.einsum("ki,ki->k", scaled, np.linalg.solve(correlations[usable], scaled[:, :, None])[:, :, 0])
     return squares
+
+
+def _positive_definite(matrices: np.ndarray) -> np.ndarray:
+    """Which of them have a Cholesky factor; usually all, which is found out at once."""
+    try:
+        np.linalg.cholesky(matrices)
+    except np.linalg.LinAlgError:
+        return np.linalg.eigvalsh(matrices)[:, 0] > 0.0
+    return np.ones(len(matrices), dtype=bool)
 
 
 def mean_length(covariances: np.ndarray) -> np.ndarray:
