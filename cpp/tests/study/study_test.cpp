@@ -43,8 +43,8 @@ BOOST_AUTO_TEST_CASE(answers_do_not_depend_on_the_number_of_threads) {
         BOOST_TEST_REQUIRE(one.size() == 5U);
         for (std::size_t i = 0; i < one.size(); ++i)
             for (std::size_t k = 0; k < 4; ++k) {
-                BOOST_TEST(one[i].T_camera_target[k].t == four[i].T_camera_target[k].t);
-                BOOST_TEST(one[i].covariances[k] == four[i].covariances[k]);
+                BOOST_TEST((one[i].T_camera_target[k].t == four[i].T_camera_target[k].t));
+                BOOST_TEST((one[i].covariances[k] == four[i].covariances[k]));
             }
     }
 }
@@ -72,8 +72,8 @@ BOOST_AUTO_TEST_CASE(a_landmark_seen_once_stays_where_it_is_told) {
     for (std::size_t k = 1; k < 4; ++k)
         std::erase_if(flight.views[k], [](const Observation& o) { return o.landmark == 7; });
     const study::Answer answer = study::solve(Method::free_window, camera(), flight, {});
-    BOOST_TEST(answer.X[7] == flight.X0[7]);
-    BOOST_TEST(answer.X[6] != flight.X0[6]);
+    BOOST_TEST((answer.X[7] == flight.X0[7]));
+    BOOST_TEST((answer.X[6] != flight.X0[6]));
     for (const SE3& T : answer.T_camera_target) BOOST_TEST(T.t.allFinite());
 }
 

@@ -110,11 +110,12 @@ def compare(mine: np.ndarray, theirs: np.ndarray) -> Comparison:
 
 
 def crossing(x: Sequence[float], ratio: Sequence[float]) -> float | None:
-    """Where a ratio rises through 1 for good, interpolated in log x; None if it ends below or never is below."""
+    """Where a ratio passes 1 for the last time, interpolated in log x; None if it never does."""
     above = np.asarray(ratio) >= 1.0
-    if not above[-1] or above.all():
+    others = np.flatnonzero(above != above[-1])
+    if not others.size:
         return None
-    i = int(np.flatnonzero(~above)[-1])
+    i = int(others[-1])
     share = (1.0 - ratio[i]) / (ratio[i + 1] - ratio[i])
     return float(np.exp(np.log(x[i]) + share * (np.log(x[i + 1]) - np.log(x[i]))))
 

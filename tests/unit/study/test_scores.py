@@ -58,7 +58,13 @@ def test_pairs_of_runs_are_compared_together():
 
 @pytest.mark.parametrize(
     ("ratios", "expected"),
-    [([0.5, 0.5, 1.5], np.sqrt(2.0 * 8.0)), ([0.5, 0.9, 0.9], None), ([1.1, 1.2, 1.3], None), ([1.5, 0.5, 1.5], 4.0)],
+    [
+        ([0.5, 0.5, 1.5], np.sqrt(2.0 * 8.0)),
+        ([0.5, 0.9, 0.9], None),
+        ([1.1, 1.2, 1.3], None),
+        ([1.5, 0.5, 1.5], 4.0),
+        ([1.5, 0.5, 0.5], 1.0),
+    ],
 )
 def test_the_crossing_lies_between_the_settings(ratios, expected):
     found = crossing([0.5, 2.0, 8.0], ratios)

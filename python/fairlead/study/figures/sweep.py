@@ -112,7 +112,7 @@ def _relative(
 
 
 def _mark_crossings(axes: Axes, methods: ByMethod, x: Sequence[float], name: str, shown: Sequence[str]) -> None:
-    """A ring where a window becomes worse than EPnP for good, with the place beside it."""
+    """A ring where a window becomes worse, or better, than EPnP for good, with the place beside it."""
     for method in shown:
         if method not in methods or not method.startswith(("window", "free")):
             continue
