@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-CPP_LAYERS = ["geometry", "robust", "pnp", "window", "tracker"]
+CPP_LAYERS = ["geometry", "robust", "dense", "pnp", "window", "tracker"]
 CORE_DOORS = {"tracker.py", "tracker", "baselines/free_window.py", "study/methods.py", "__init__.py"}
 
 
