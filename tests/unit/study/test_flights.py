@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fairlead.baselines.epnp import EpnpTracker
+from fairlead.opencv import epnp_views
 from fairlead.simulate import simulate_arc
 from fairlead.study.flights import draw_flights, first_poses
 from fairlead.study.settings import Setting, find_setting, settings_of
@@ -47,6 +48,20 @@ def test_the_starts_are_those_of_epnp(task):
     tracker = EpnpTracker(flight.target_told, task.camera)
     expected = np.stack([tracker.update(view).T_camera_target for view in flight.views])
     np.testing.assert_allclose(first_poses(block)[0], expected, rtol=1e-9, atol=1e-9)
+
+
+def test_a_view_without_an_answer_is_none(task):
+    block = draw_flights(task.target, task.camera, SETTING, (0,), task.seed)
+    pixels = block.pixels[0].copy()
+    pixels[1, 4, 0] = np.nan
+    pixels[2] = pixels[2].mean(axis=0)
+    missing = np.isnan(epnp_views(block.X0[0], pixels, task.camera)).all(axis=(1, 2))
+    assert missing.tolist() == [False, True, True, False]
+
+
+def test_a_wrong_number_of_points_is_refused(task):
+    with pytest.raises(ValueError, match="EPnP: expected"):
+        epnp_views(task.target.positions[:3], np.zeros((1, 3, 2)), task.camera)
 
 
 def test_a_flat_target_gets_poses_too(task):
