@@ -54,22 +54,22 @@ _FROM_EPNP = {"refine_start": False, "pnp_after": False}
 METHODS = (
     Method(name="epnp", label="EPnP", solver="start"),
     Method(name="single", label="single view refined", solver="single_view"),
-    Method(name="window", label="window (published)", solver="free_window"),
+    Method(name="window", label="published window (2 damped steps)", solver="free_window"),
     Method(
         name="window-5",
-        label="window, 5 steps from EPnP",
+        label="published window (5 steps)",
         solver="free_window",
         free=FreeOptions(max_iterations=5, initial_damping=0.1, **_FROM_EPNP),
     ),
     Method(
         name="window-3",
-        label="window, 3 undamped steps from EPnP",
+        label="published window (3 undamped steps)",
         solver="free_window",
         free=FreeOptions(max_iterations=3, initial_damping=1e-4, **_FROM_EPNP),
     ),
     Method(
         name="free",
-        label="full batch without prior, converged",
+        label="full batch without prior",
         solver="free_window",
         free=FreeOptions(max_iterations=50, initial_damping=1e-4, tolerance=1e-6, pnp_after=False),
     ),

@@ -35,7 +35,7 @@ def draw_gain(lines: Sequence[Line], settings: Sequence[Setting], error: str, ti
             cells = [s for s in settings if s.outlier_fraction == share and s.model_sigma_m == model]
             _panel(axes, cells, {s.name: found[method, s.name] for s in cells if (method, s.name) in found}, error)
             if i == 0:
-                axes.set_title(f"{LABELS[method]}\nmodel error {model:g} m", fontsize=8.5)
+                axes.set_title(f"{LABELS[method].partition(' (')[0]}\nmodel error {model:g} m", fontsize=8.5)
             if i == len(outliers) - 1:
                 axes.set_xlabel("noise [px]")
         row[0].set_ylabel(f"{100 * share:g} % outliers\nangle [deg]")
