@@ -14,4 +14,5 @@ NB_MODULE(_core, module) {
     fairlead::bindings::bind_geometry(module);
     fairlead::bindings::bind_pnp(module);
     fairlead::bindings::bind_tracker(module);
+    fairlead::bindings::bind_study(module);
 }

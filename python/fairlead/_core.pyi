@@ -210,3 +210,49 @@ def solve_window(
     initial_damping: float = 0.0001,
     tolerance: float = 1e-09,
 ) -> tuple: ...
+
+class FreeWindowOptions:
+    def __init__(self) -> None: ...
+    @property
+    def max_iterations(self) -> int: ...
+    @max_iterations.setter
+    def max_iterations(self, arg: int, /) -> None: ...
+    @property
+    def initial_damping(self) -> float: ...
+    @initial_damping.setter
+    def initial_damping(self, arg: float, /) -> None: ...
+    @property
+    def tolerance(self) -> float: ...
+    @tolerance.setter
+    def tolerance(self, arg: float, /) -> None: ...
+    @property
+    def refine_start(self) -> bool: ...
+    @refine_start.setter
+    def refine_start(self, arg: bool, /) -> None: ...
+    @property
+    def pnp_after(self) -> bool: ...
+    @pnp_after.setter
+    def pnp_after(self, arg: bool, /) -> None: ...
+
+class Flights:
+    def __init__(
+        self,
+        camera: Camera,
+        X_true: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order="C", device="cpu", writable=False)],
+        X0: Annotated[NDArray[numpy.float64], dict(shape=(None, None, 3), order="C", device="cpu", writable=False)],
+        P0: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order="C", device="cpu", writable=False)],
+        stamps_ns: Annotated[NDArray[numpy.int64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        T_true: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, None, 4, 4), order="C", device="cpu", writable=False)
+        ],
+        T_start: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, None, 4, 4), order="C", device="cpu", writable=False)
+        ],
+        pixels: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, None, None, 2), order="C", device="cpu", writable=False)
+        ],
+        covariances: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, None, None, 2, 2), order="C", device="cpu", writable=False)
+        ],
+    ) -> None: ...
+    def solve(self, method: str, free_window: FreeWindowOptions, tracker: TrackerOptions, threads: int) -> tuple: ...

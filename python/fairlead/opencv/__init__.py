@@ -16,6 +16,7 @@ from fairlead.opencv.markers import (
     marker_image,
 )
 from fairlead.opencv.pnp import MIN_POINTS, PnpSolution, epnp, ideal_pixels, ippe, refine, sqpnp
+from fairlead.opencv.pnp_views import epnp_views
 
 __all__ = [
     "MIN_POINTS",
@@ -26,6 +27,7 @@ __all__ = [
     "charuco_corners",
     "chessboard_corners",
     "epnp",
+    "epnp_views",
     "grey",
     "ideal_pixels",
     "image_size",
