@@ -10,6 +10,8 @@ from fairlead import geometry
 from fairlead.render.viewpoints import direction, look_at
 from fairlead.types import Camera, Matrix4, Points3
 
+LEAST_PX = 24
+"""No crop is drawn in fewer pixels."""
 PAD = 1.25
 """Side of a crop in units of the larger side of the landmarks' box, before it is varied."""
 
@@ -28,8 +30,8 @@ class CropView:
 
     camera: Camera
     T_camera_target: Matrix4
-    native_px: float
-    """Side of the crop in the image it is cut out of [px]: fewer than its own pixels means it was enlarged."""
+    native: Camera
+    """The same view in as many pixels as the flight's camera has for it, at most those of the crop."""
 
 
 def draw_view(X: Points3, camera: Camera, envelope: Envelope, size: int, rng: np.random.Generator) -> CropView:
@@ -48,7 +50,9 @@ def draw_view(X: Points3, camera: Camera, envelope: Envelope, size: int, rng: np
     side = PAD * float((box_high - box_low).max()) / float(np.exp(rng.uniform(np.log(0.6), np.log(1.4))))
     reach = 0.5 if rng.random() < 0.1 else 0.15
     corner = 0.5 * (box_low + box_high) + rng.uniform(-reach, reach, 2) * side - 0.5 * side
-    return CropView(camera=crop_camera(camera, corner, side, size), T_camera_target=T, native_px=side)
+    cut = crop_camera(camera, corner, side, size)
+    native = crop_camera(camera, corner, side, max(LEAST_PX, round(side))) if side < size else cut
+    return CropView(camera=cut, T_camera_target=T, native=native)
 
 
 def crop_camera(camera: Camera, corner: np.ndarray, side: float, size: int) -> Camera:

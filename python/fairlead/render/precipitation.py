@@ -66,7 +66,8 @@ def falling(
     # A drop that is thinner than a pixel, or that sweeps over many, covers each of them for a part of the time.
     cover = np.clip(np.minimum(size_px, 1.0) * np.clip(6.0 * size_px / (length_px + size_px), 0.15, 1.0), 0.0, 0.9)
     order = np.argsort(cover)
-    inside = np.abs(last).max(axis=1) < 4.0 * max(camera.width, camera.height)
+    size = np.array([camera.width, camera.height])
+    inside = (np.abs(last - 0.5 * size) / size).max(axis=1) < 1.5
     order = order[inside[order]]
     widths = np.clip(size_px, 1.0, 0.03 * camera.width)
     return streaks((camera.height, camera.width), first[order], last[order], widths[order], cover[order])

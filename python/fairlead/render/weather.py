@@ -85,7 +85,7 @@ def _rain(image: LinearImage, sensor: Sensor, weather: Weather, frame: Circumsta
     grey = 0.8 * frame.air.mean() + 0.2 * frame.air
     flat = replace(image, radiance=_flattened(image.radiance, 0.5 * s) * np.float32(1.0 - 0.35 * s))
     veiled = _veiled(flat, visibility_m(s, 15_000.0, 1_200.0) * _breathing(weather, frame.time_s), 0.6 * grey)
-    drops = Flakes(count=round(60_000 * s), size_m=0.0022, fall_m_s=7.5, drift_m_s=0.6 * frame.wind_m_s, sway_m=0.0)
+    drops = Flakes(count=round(150_000 * s), size_m=0.0022, fall_m_s=7.5, drift_m_s=0.6 * frame.wind_m_s, sway_m=0.0)
     layer = falling(drops, frame.camera, frame.T_camera_world, frame.time_s, 1.0 / 120.0, weather.seed)[..., None]
     light = veiled.radiance * (1.0 - 0.25 * layer) + 0.55 * layer * np.float32(0.6 * grey.mean() * 1.6)
     return replace(veiled, radiance=light.astype(np.float32)), replace(sensor, blur_px=sensor.blur_px + 0.35 * s)
@@ -99,7 +99,7 @@ def _snow(image: LinearImage, sensor: Sensor, weather: Weather, frame: Circumsta
         visibility_m(s, 20_000.0, 600.0) * _breathing(weather, frame.time_s),
         0.85 * grey,
     )
-    flakes = Flakes(count=round(50_000 * s), size_m=0.007, fall_m_s=1.3, drift_m_s=0.8 * frame.wind_m_s, sway_m=0.15)
+    flakes = Flakes(count=round(90_000 * s), size_m=0.007, fall_m_s=1.3, drift_m_s=0.8 * frame.wind_m_s, sway_m=0.15)
     layer = falling(flakes, frame.camera, frame.T_camera_world, frame.time_s, 1.0 / 250.0, weather.seed)[..., None]
     white = np.float32(1.15 * grey.mean())
     return replace(veiled, radiance=(veiled.radiance * (1.0 - layer) + white * layer).astype(np.float32)), sensor
@@ -113,11 +113,11 @@ def _glare(image: LinearImage, sensor: Sensor, weather: Weather, frame: Circumst
     x, y = towards[0], min(towards[1], -0.05)  # a low sun is above the picture, wherever it is
     depth = max(float(abs(towards[2])), 0.25)
     centre = np.array([K[0, 0] * x / depth + K[0, 2], K[1, 1] * y / depth + K[1, 2]])
-    centre = np.clip(centre, [-0.3 * width, -0.5 * height], [1.3 * width, 1.0 * height])
+    centre = np.clip(centre, [-0.05 * width, -0.12 * height], [1.05 * width, 1.0 * height])
     rows, columns = np.arange(height)[:, None], np.arange(width)[None, :]
     off = np.hypot(columns - centre[0], rows - centre[1]) / max(height, width)
     white = np.float32(1.0 / sensor.exposure)
-    veil = (2.2 * np.exp(-off / 0.16) + 1.7 * np.exp(-off / 0.7)) * s
+    veil = (3.5 * np.exp(-off / 0.14) + 1.5 * np.exp(-off / 0.5)) * s
     tint = np.array([1.0, 0.94, 0.84], np.float32)
     bright = np.minimum(np.maximum(image.radiance - 0.5 * white, 0.0), 20.0 * white)
     bleeding = sum(blurred(bright, k * max(height, width) / 256.0) for k in (1.5, 6.0, 20.0))

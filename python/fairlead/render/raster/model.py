@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import moderngl
 
 
-LEAST_PX = 0.12
+LEAST_PX = 0.2
 """Parts thinner than this are left out of pictures (never of truth) [px]."""
 
 

@@ -29,7 +29,7 @@ _UNITS = {"sky_map": 0, "noise_map": 1, "shadow_map": 2, "wake_near": 3, "wake_f
 
 
 class Renderer:
-    """One context, images of one size. Raises RenderError where nothing can be drawn."""
+    """One context, images of at most one size. Raises RenderError where nothing can be drawn."""
 
     def __init__(self, width: int, height: int) -> None:
         self._context = context = open_context()
@@ -103,6 +103,7 @@ class Renderer:
         check_pinhole(shot.camera)
         surroundings = self._ready()
         light = self._cast_shadows(shot, target, surroundings)
+        self._many.viewport = (0, 0, *self._fitting(shot))
         self._many.use()
         self._many.clear()
         for unit, texture in enumerate([self._light[0], self._noise, self._shadow_map, *self._light[1:], *self._waves]):
@@ -120,13 +121,14 @@ class Renderer:
             _tell(self._paint, told | {"shadowed": int(model is target)})
             model.painted.render(vertices=model.count(shot.camera.K[0, 0] / max(span[0], 1e-3)))
         self._context.copy_framebuffer(self._one, self._many)
-        pixels = self._read(self._one, np.float16)
+        pixels = self._read(self._one, np.float16, shot)
         return LinearImage(radiance=pixels[..., :3].copy(), distance=pixels[..., 3].copy())
 
     def truth(self, shot: Shot, target: Model) -> TruthImage:
         """Mask of the target and depth, one sample at the centre of each pixel."""
         check_pinhole(shot.camera)
         surroundings = self._ready()
+        self._truth.viewport = (0, 0, *self._fitting(shot))
         self._truth.use()
         self._truth.clear()
         self._enable_depth()
@@ -135,7 +137,7 @@ class Renderer:
             told = uniforms.surface_uniforms(shot, model, T_world_model, surroundings, span)
             _tell(self._number, told | {"number": float(number)})
             model.numbered.render()
-        pixels = self._read(self._truth, np.float32)
+        pixels = self._read(self._truth, np.float32, shot)
         depth = np.where(pixels[..., 1] > 0.0, pixels[..., 0], np.float32(np.inf))
         return TruthImage(mask=pixels[..., 1] == 1.0, depth=depth)
 
@@ -164,9 +166,18 @@ class Renderer:
         target.dark.render()
         return uniforms.shadow_of_eye(light)
 
-    def _read(self, framebuffer: "moderngl.Framebuffer", dtype: type[np.float16] | type[np.float32]) -> np.ndarray:
-        raw = framebuffer.read(components=4, dtype="f2" if dtype is np.float16 else "f4")
-        width, height = self._size
+    def _fitting(self, shot: Shot) -> tuple[int, int]:
+        """Size of the shot's image, which may be smaller than the renderer's. Raises ValueError if it is larger."""
+        size = (shot.camera.width, shot.camera.height)
+        if size[0] > self._size[0] or size[1] > self._size[1]:
+            raise ValueError(f"renderer: expected an image of at most {self._size}, got {size}")
+        return size
+
+    def _read(
+        self, framebuffer: "moderngl.Framebuffer", dtype: type[np.float16] | type[np.float32], shot: Shot
+    ) -> np.ndarray:
+        width, height = self._fitting(shot)
+        raw = framebuffer.read((0, 0, width, height), components=4, dtype="f2" if dtype is np.float16 else "f4")
         return np.frombuffer(raw, dtype).reshape(height, width, 4).astype(np.float32)
 
 

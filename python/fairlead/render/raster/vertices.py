@@ -41,11 +41,13 @@ def thickest_first(surface: Surface) -> tuple[Surface, Float64[np.ndarray, "m"]]
 
     mesh = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
     part = trimesh.graph.connected_component_labels(mesh.face_adjacency, node_count=len(surface.faces))
-    order = np.argsort(part, kind="stable")
-    thickness = np.zeros(len(part))
-    for faces in np.split(order, np.flatnonzero(np.diff(part[order])) + 1):
-        points = surface.vertices[surface.faces[faces]].reshape(-1, 3)
-        thickness[faces] = 2.0 * np.sqrt(max(np.linalg.eigvalsh(np.cov(points.T))[1], 0.0))
+    points, owner = surface.vertices[surface.faces].reshape(-1, 3), np.repeat(part, 3)
+    count = np.bincount(owner)
+    mean = np.column_stack([np.bincount(owner, points[:, k]) / count for k in range(3)])
+    about = points - mean[owner]
+    products = (about[:, :, None] * about[:, None, :]).reshape(-1, 9)
+    spread = np.column_stack([np.bincount(owner, products[:, k]) / count for k in range(9)]).reshape(-1, 3, 3)
+    thickness = (2.0 * np.sqrt(np.maximum(np.linalg.eigvalsh(spread)[:, 1], 0.0)))[part]
     order = np.argsort(-thickness, kind="stable")
     sorted_surface = replace(surface, faces=surface.faces[order], material_of_face=surface.material_of_face[order])
     return sorted_surface, thickness[order]
