@@ -38,7 +38,7 @@ class TrackerOptions:
     ambiguity_log_odds: float = _D.ambiguity_log_odds
     """Two poses whose log odds [nat] are closer than this are both kept."""
     motion: str = _D.motion
-    """What is smooth in time: none, range, target or world, docs/motion.md. A `[motion]` of the target overrides it."""
+    """What is smooth in time: none, range, target or world, docs/motion.md. With none, the target's own holds."""
     jerk_density_m_s25: float = _D.jerk_density_m_s25
     """Root of the power spectral density of its jerk [m/s^2.5], as a first guess: the data judge it."""
     correlation_time_s: float = _D.correlation_time_s
@@ -128,8 +128,8 @@ class Tracker:
         self._target = target
         self._index = LandmarkIndex(target.landmarks)
         options = options or TrackerOptions()
-        if target.motion is not None:
-            motion = target.motion
+        motion = target.motion
+        if motion is not None and options.motion == "none":
             options = replace(options, motion=motion.kind, jerk_density_m_s25=motion.jerk_density_m_s25)
         self._core = _core.Tracker(core_camera(camera), target.positions, target.covariance, options.to_core())
         for distance in target.distances:
