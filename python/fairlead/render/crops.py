@@ -3,6 +3,7 @@
 """Training crops of any target with a mesh: varied in everything, labelled exactly. docs/rendering.md section 8."""
 
 import json
+import signal
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -116,6 +117,7 @@ _makers: list["CropMaker"] = []
 
 
 def _start(job: CropJob) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent stops, and cancels what has not begun
     _makers.append(CropMaker(job))
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders a job: every frame that is not there yet, in one or more processes, then the tables."""
 
+import signal
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
@@ -65,6 +66,7 @@ _workers: list["FrameWorker"] = []
 
 
 def _start(job: Job) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent stops, and cancels what has not begun
     _workers.append(FrameWorker(job))
 
 

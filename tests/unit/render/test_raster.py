@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rasteriser against an independent ray caster: masks, depth, half pixels; and what its pictures show."""
 
+import itertools
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -151,6 +152,28 @@ def test_pictures_are_finite_repeatable_and_lit_from_the_sun(graphics: None, fri
         distance = image.distance[mask]
         assert 350.0 < float(distance.min()) < float(distance.max()) < 650.0
     assert bright[1.0] > 1.5 * bright[-1.0]
+
+
+def test_the_sea_does_not_flicker(graphics: None, frigate: Shipped) -> None:
+    """From one frame of the 25 Hz camera to the next, waves move and the light of a patch of sea stays."""
+    from fairlead.render.raster.renderer import Renderer
+
+    renderer = Renderer(128, 128)
+    model = renderer.add(pack(frigate.surface))
+    renderer.set_surroundings(sea(frigate))
+    field = WaveField(8.0, 0.3, 1)
+    shot = Shot(
+        camera=pinhole(128, 240.0), T_camera_target=view(frigate, 150.0, 15.0, 2000.0), T_world_target=np.eye(4)
+    )
+    patches: list[np.ndarray] = []
+    for step in range(6):
+        renderer.set_waves(field.at(5.0 + 0.04 * step))
+        patches.append(renderer.draw(shot, model).radiance[80:120, 20:100].mean(axis=2))
+    means = np.array([patch.mean() for patch in patches])
+    assert np.abs(np.diff(means)).max() < 0.005 * means.mean()
+    following = [np.corrcoef(a.ravel(), b.ravel())[0, 1] for a, b in itertools.pairwise(patches)]
+    # One pixel is 8 m across and 32 m along: what is seen of the waves lives for a second.
+    assert min(following) > 0.9
 
 
 def test_the_horizon_is_where_the_earth_curves_away(graphics: None, frigate: Shipped) -> None:
