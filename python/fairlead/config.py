@@ -120,9 +120,9 @@ class RenderConfig:
     """target.toml that names a mesh; the frigate if not given."""
     camera: Path | None = None
     """Calibration of a camera without distortion; camera.yaml beside the target if not given."""
-    quality: Literal["full", "draft"] = "full"
-    """full: Cycles, minutes an image. draft: OpenGL, a second."""
-    samples: int = 8
+    quality: Literal["full", "draft"] | None = None
+    """full: Cycles, seconds an image. draft: OpenGL, many a second. Sequences are full, crops draft if not said."""
+    samples: int = 16
     """Light paths per pixel at full quality: fewer are grainy, more take longer."""
     surroundings: Literal["sea", "space"] = "sea"
     """What the target is in."""

@@ -33,8 +33,8 @@ def render(
     *,
     target: Path | None = None,
     camera: Path | None = None,
-    quality: Quality = "full",
-    samples: int = 8,
+    quality: Quality | None = None,
+    samples: int = 16,
     surroundings: Kind = "sea",
     weather: WeatherKind | None = None,
     strength: float = 0.5,
@@ -71,6 +71,8 @@ def render(
             size=size,
             seed=seed,
             surroundings=surroundings,
+            quality=quality or "draft",
+            samples=samples,
         )
         return render_crops(crops, jobs=jobs, progress=progress)
     from fairlead.render.sequence import render_sequence
@@ -82,7 +84,7 @@ def render(
         camera=lens,
         placed=tuple(placed[:frames]),
         folder=output,
-        quality=quality,
+        quality=quality or "full",
         samples=samples,
         setting=setting,
         seed=seed,

@@ -8,7 +8,7 @@ import numpy as np
 
 from fairlead import geometry
 from fairlead.render.distractors import container_ship, island, small_craft
-from fairlead.render.ocean import WaveField
+from fairlead.render.ocean import WaveField, Waves
 from fairlead.render.raster.model import Model
 from fairlead.render.raster.renderer import Renderer
 from fairlead.render.raster.vertices import Vertices, open_sky, pack, thickest_first
@@ -30,6 +30,7 @@ class CropScene:
     X: Points3
     """Landmarks on the varied shape [m]."""
     surroundings: Surroundings
+    waves: Waves | None
 
 
 class Stage:
@@ -42,6 +43,8 @@ class Stage:
         self._vertices: Vertices = pack(surface, shares)
         self.model = renderer.add(self._vertices, thickness)
         self._T_level_target = np.eye(4)
+        self._waves: Waves | None = None
+        self.painted = surface
         rng = np.random.default_rng(5)
         others = [container_ship(rng), container_ship(rng), small_craft(rng), small_craft(rng), small_craft(rng)]
         self._ships = [renderer.add(pack(other)) for other in others] if kind == "sea" else []
@@ -60,8 +63,10 @@ class Stage:
         self._renderer.set_surroundings(surroundings)
         self._T_level_target = geometry.exp_se3(np.array([0.0, 0.0, 0.5, 0.03, 0.008, 0.0]) * rng.standard_normal(6))
         self._vertices[:, :3] = surface.vertices[surface.faces].reshape(-1, 3)
+        self.painted = surface
         self.paint(rng)
-        return CropScene(caster=RayCaster(surface), X=warp(self._target.positions), surroundings=surroundings)
+        caster = RayCaster(surface)
+        return CropScene(caster=caster, X=warp(self._target.positions), surroundings=surroundings, waves=self._waves)
 
     def _sea(self, surface: Surface, azimuth: float, rng: np.random.Generator) -> Surroundings:
         overcast = rng.choice([sky[0] for sky in SKIES], p=[sky[1] for sky in SKIES])
@@ -77,12 +82,14 @@ class Stage:
             weathering=float(rng.uniform(0.0, 1.0)),
         )
         waves = WaveField(surroundings.wind_m_s, float(rng.uniform(0.0, 2.0 * np.pi)), int(rng.integers(2**31)))
-        self._renderer.set_waves(waves.at(float(rng.uniform(0.0, 100.0))))
+        self._waves = waves.at(float(rng.uniform(0.0, 100.0)))
+        self._renderer.set_waves(self._waves)
         return surroundings
 
     def paint(self, rng: np.random.Generator) -> None:
         """Other colours on the same shape."""
         painted = self._surface.with_materials(repainted(self._surface, rng))
+        self.painted = self.painted.with_materials(painted.materials)
         self._vertices[:, 6:9] = np.repeat(painted.colours, 3, axis=0)
         self._vertices[:, 9] = np.repeat(painted.roughness, 3)
         self.model.repaint(self._vertices)

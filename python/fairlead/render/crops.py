@@ -4,7 +4,7 @@
 
 import json
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -21,7 +21,7 @@ from fairlead.render.crop_view import Envelope, draw_view
 from fairlead.render.disturbances import draw_obstacle, draw_sensor, smeared, tinted
 from fairlead.render.errors import RenderError
 from fairlead.render.images import LinearImage
-from fairlead.render.job import horizon
+from fairlead.render.job import Quality, horizon
 from fairlead.render.raster.model import Shot
 from fairlead.render.raster.renderer import Renderer
 from fairlead.render.sensor import Picture, develop
@@ -51,6 +51,9 @@ class CropJob:
     size: int = 256
     seed: int = 0
     surroundings: Kind = "sea"
+    quality: Quality = "draft"
+    samples: int = 16
+    """Light paths per pixel, full quality only."""
     weather_share: float = 0.35
     """How many crops have weather [-]."""
 
@@ -138,15 +141,28 @@ class CropMaker:
     def make(self, block: int) -> list[dict[str, Any]]:
         """Write the pictures of a block; returns their labels."""
         scene = self._stage.set(np.random.default_rng([self._job.seed, block, 1]))
+        light = self._light_of(scene)
         labels: list[dict[str, Any]] = []
         for number in _numbers(self._job, block):
             rng = np.random.default_rng([self._job.seed, number, 2])
-            if number % PAINT_EVERY == 0:
+            if number % PAINT_EVERY == 0 and self._job.quality == "draft":
                 self._stage.paint(rng)
-            labels.append(self._crop(number, scene, rng))
+            labels.append(self._crop(number, scene, light, rng))
         return labels
 
-    def _crop(self, number: int, scene: CropScene, rng: np.random.Generator) -> dict[str, Any]:
+    def _light_of(self, scene: CropScene) -> Callable[[Shot, int], LinearImage]:
+        """What turns a shot, and a seed, into light."""
+        if self._job.quality == "draft":
+            return lambda shot, _: self._renderer.draw(shot, self._stage.model)
+        from fairlead.render.cycles.tracer import Tracer
+
+        stage, surroundings = self._stage, scene.surroundings
+        tracer = Tracer(self._renderer, stage.model, stage.painted, surroundings, self._job.samples)
+        return lambda shot, seed: tracer.render(shot, scene.waves, seed)[0]
+
+    def _crop(
+        self, number: int, scene: CropScene, light: Callable[[Shot, int], LinearImage], rng: np.random.Generator
+    ) -> dict[str, Any]:
         job = self._job
         view = draw_view(scene.X, job.camera, job.envelope, job.size, rng)
         T_world_target = self._stage.place(rng)
@@ -156,7 +172,7 @@ class CropMaker:
             T_world_target=T_world_target,
             others=self._stage.others(T_world_target, rng),
         )
-        image = self._renderer.draw(shot, self._stage.model)
+        image = light(shot, number)
         seen = see(_moved(job.target, scene), view.camera, view.T_camera_target, scene.caster)
         visibility = np.array([{"outside": 0, "hidden": 1, "visible": 2}[state] for state in seen.states])
         picture, covered = self._photograph(image, shot, scene, rng)

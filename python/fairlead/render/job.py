@@ -47,7 +47,7 @@ class Job:
     placed: tuple[Placed, ...]
     folder: Path
     quality: Quality = "full"
-    samples: int = 8
+    samples: int = 16
     """Light paths per pixel, full quality only."""
     setting: Setting = Setting()
     weather: Weather | None = None

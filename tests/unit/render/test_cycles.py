@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fairlead import geometry
+from fairlead.io.coco import read_coco
 from fairlead.render.cycles.materials import environment_pixels
 from fairlead.render.cycles.sea import foam_cover, image_box, make_patch
 from fairlead.render.flights import Swell, fly
@@ -95,3 +96,16 @@ def test_one_tiny_frame(graphics: None, frigate: Shipped, tmp_path: Path) -> Non
     assert (truth.mask & ~np.isfinite(depth)).sum() <= 0.01 * truth.mask.sum()
     dark, bright = np.quantile(first.radiance[truth.mask].mean(axis=1), [0.05, 0.95])
     assert 0.0 < dark < bright < 3.0
+
+
+def test_crops_at_full_quality_have_the_labels_of_drafts(graphics: None, repository: Path, tmp_path: Path) -> None:
+    pytest.importorskip("bpy", reason="bpy is not installed (fairlead[render] on Python 3.11)")
+    from fairlead.render.command import render
+
+    for quality in ("draft", "full"):
+        target = repository / "data" / "frigate" / "target.toml"
+        assert render("crops", tmp_path / quality, target=target, quality=quality, samples=1, count=2, size=64) == 2
+    labels = [read_coco(tmp_path / quality / "annotations.json")[1] for quality in ("draft", "full")]
+    for draft, full in zip(*labels, strict=True):
+        assert np.array_equal(draft.pixels, full.pixels) or draft.visibility != full.visibility
+        assert np.array_equal(draft.T_camera_target, full.T_camera_target)

@@ -53,24 +53,28 @@ def empty_scene(bpy: Any, samples: int) -> Any:
     return scene
 
 
-def add_camera(bpy: Any, scene: Any, camera: Camera) -> Any:
+def add_camera(bpy: Any, scene: Any) -> Any:
+    """The scene's camera, not yet pointed at anything."""
+    made = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    scene.collection.objects.link(made)
+    scene.camera = made
+    return made
+
+
+def set_camera(scene: Any, made: Any, camera: Camera) -> None:
     """A pinhole camera; Blender's image, too, is the plane -1/2 to W - 1/2. Raises RenderError for oblong pixels."""
     fx, fy = float(camera.K[0, 0]), float(camera.K[1, 1])
     if abs(fx - fy) > 1e-6 * fx:
         raise RenderError(f"camera {camera.name}: full quality expects square pixels, got focal lengths {fx} and {fy}")
-    data = bpy.data.cameras.new("camera")
-    made = bpy.data.objects.new("camera", data)
-    scene.collection.objects.link(made)
-    scene.camera = made
     W, H = camera.width, camera.height
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = W, H, 100
+    data = made.data
     data.sensor_fit = "HORIZONTAL"
     data.sensor_width = 36.0
     data.lens = fx * 36.0 / W
     data.shift_x = -(float(camera.K[0, 2]) + 0.5 - 0.5 * W) / W
     data.shift_y = (float(camera.K[1, 2]) + 0.5 - 0.5 * H) / W
     data.clip_start, data.clip_end = 0.5, 1e5
-    return made
 
 
 @contextmanager

@@ -95,8 +95,8 @@ class Renderer:
             self._waves = [texture_of(self._context, array, repeat=(True, True)) for array in arrays]
         _tell(self._sea, {"breaking": waves.breaking, "fine_variance": 0.0012 + 0.0006 * waves.wind_m_s})
 
-    def draw(self, shot: Shot, target: Model, *, background_only: bool = False) -> LinearImage:
-        """The image in linear light; `background_only` leaves the target out, but not its shadow and mirror image.
+    def draw(self, shot: Shot, target: Model, *, without_target: bool = False) -> LinearImage:
+        """The image in linear light; `without_target` leaves it out, but not its shadow and mirror image.
 
         Raises RenderError for a camera with distortion, ValueError without light.
         """
@@ -116,7 +116,7 @@ class Renderer:
         self._enable_depth()
         span = uniforms.depth_range(shot, target)
         _tell(self._paint, {"shadow_of_eye": light.T} | uniforms.haze(shot, surroundings))
-        for model, T_world_model in () if background_only else _placed(shot, target):
+        for model, T_world_model in _placed(shot, target)[int(without_target) :]:
             told = uniforms.surface_uniforms(shot, model, T_world_model, surroundings, span)
             _tell(self._paint, told | {"shadowed": int(model is target)})
             model.painted.render(vertices=model.count(shot.camera.K[0, 0] / max(span[0], 1e-3)))
