@@ -146,7 +146,7 @@ class CropMaker:
         for number in _numbers(self._job, block):
             rng = np.random.default_rng([self._job.seed, number, 2])
             if number % PAINT_EVERY == 0 and self._job.quality == "draft":
-                self._stage.paint(rng)
+                self._stage.paint(np.random.default_rng([self._job.seed, number, 3]))
             labels.append(self._crop(number, scene, light, rng))
         return labels
 
