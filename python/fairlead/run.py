@@ -11,6 +11,7 @@ from pathlib import Path
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
 from fairlead.io.attitudes import read_attitudes
+from fairlead.io.bop import is_bop
 from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
 from fairlead.io.options import load_options
@@ -21,6 +22,7 @@ from fairlead.io.target import load_target
 from fairlead.io.timing import Timing
 from fairlead.progress import ProgressFactory, silent
 from fairlead.sinks.run_folder import WRITTEN, RunFolder
+from fairlead.sources.bop import BopSource
 from fairlead.sources.image_folder import ImageFolderSource
 from fairlead.sources.readings import SensorReadings
 from fairlead.sources.source import ImageFrame, ImageSource, ViewSource
@@ -172,7 +174,8 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
         detector = detector_from_spec(config.detector, target)
     except ValueError as error:
         raise UsageError(f"--detector: {str(error).removeprefix('detector: ')}") from error
-    images = ImageFolderSource(path, camera, fps=config.fps)
+    source = BopSource if is_bop(path) else ImageFolderSource
+    images = source(path, camera, fps=config.fps)
     return DetectedViews(images, lambda each: detector.detect(each.image, each.frame, each.stamp_ns))
 
 

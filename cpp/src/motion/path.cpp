@@ -198,7 +198,7 @@ bool Path::own_position(const window::ViewBlock& view, double noise_factor, Vec3
     if (!tied_ || llt.info() != Eigen::Success) return false;
     position = tie_.value - tie_.J_pose * llt.solve(view.g);
     const Eigen::Matrix<double, 6, 3> spread = llt.solve(tie_.J_pose.transpose());
-    covariance = noise_factor * tie_.J_pose * spread;
+    covariance = noise_factor * tie_.J_pose * spread + tie_.covariance;
     return true;
 }
 

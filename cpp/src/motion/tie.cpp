@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fairlead/motion/tie.hpp"
 
+#include <Eigen/LU>
+#include <cmath>
 #include <stdexcept>
 
 namespace fairlead::motion {
 namespace {
+
+constexpr double kAttitudeCaution = 10.0;  // times the told sigma, docs/motion.md section 2
+constexpr double kAttitudeFloor = 0.01;    // [rad]
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
@@ -62,7 +67,8 @@ bool measure(Kind kind, const SE3& T, std::span<const Vec3> X, const window::Sli
     const Vec3 p = T * centroid(X);
     const double range = p.norm();
     if (!(range > 0.0)) return false;
-    tie.information = Mat33::Identity() / (kRoughness_m * kRoughness_m);
+    tie.covariance = kRoughness_m * kRoughness_m * Mat33::Identity();
+    tie.information = tie.covariance.inverse();
     switch (kind) {
         case Kind::none:
             return false;
@@ -82,10 +88,9 @@ bool measure(Kind kind, const SE3& T, std::span<const Vec3> X, const window::Sli
             measure_scaled(T, X, slice, gauge_rate_t, R, R * p, tie);
             // An error of the attitude moves the centroid across the line of sight.
             const Vec3 along = R * p / range;
-            const double across = range * attitude->sigma_rad;
-            const Mat33 covariance = across * across * (Mat33::Identity() - along * along.transpose()) +
-                                     kRoughness_m * kRoughness_m * Mat33::Identity();
-            tie.information = covariance.inverse();
+            const double across = range * std::hypot(kAttitudeCaution * attitude->sigma_rad, kAttitudeFloor);
+            tie.covariance += across * across * (Mat33::Identity() - along * along.transpose());
+            tie.information = tie.covariance.inverse();
             return true;
         }
     }

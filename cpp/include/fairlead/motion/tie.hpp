@@ -35,6 +35,7 @@ struct Tie {
     Eigen::Matrix<double, 3, 6> J_pose = Eigen::Matrix<double, 3, 6>::Zero();
     Eigen::Matrix<double, Eigen::Dynamic, 3> J_X_t;  ///< transposed
     Mat33 information = Mat33::Zero();               ///< of the path being this value [1/m^2]
+    Mat33 covariance = Mat33::Zero();                ///< its inverse [m^2]
 };
 
 /// How far the path may be from smooth in one view, one standard deviation [m] and share of the range.
