@@ -10,6 +10,7 @@ namespace fairlead::motion {
 namespace {
 
 constexpr double kAttitudeCaution = 10.0;  // times the told sigma, docs/motion.md section 2
+constexpr double kPositionFloor = 0.05;    // [rad] the same for the position in the target frame
 constexpr double kAttitudeFloor = 0.01;    // [rad]
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;
@@ -48,6 +49,10 @@ void measure_position(const SE3& T, const window::Slice& slice, const window::Ga
     Eigen::Matrix<double, 3, 7> along;
     along << Mat33::Identity(), -so3::hat(x), x;
     tie.J_X_t.noalias() = rate_t * along.transpose();
+    const Vec3 ray = (tie.value - slice.centre()).normalized();
+    const double across = kPositionFloor * (tie.value - slice.centre()).norm();
+    tie.covariance += across * across * (Mat33::Identity() - ray * ray.transpose());
+    tie.information = tie.covariance.inverse();
 }
 
 }  // namespace
