@@ -63,7 +63,8 @@ nb::tuple refine_views(const Camera& camera, const Rows3& X0, const Square& P0, 
     nb::list estimates;
     for (const Estimate& e : refinement.estimates) estimates.append(as_tuple(e));
     return nb::make_tuple(estimates, to_array(refinement.X), to_array(refinement.covariance), refinement.noise_factor,
-                          refinement.prior_factor, refinement.cost, refinement.iterations, refinement.converged);
+                          refinement.prior_factor, refinement.prior_factor_believed, refinement.cost,
+                          refinement.iterations, refinement.converged);
 }
 
 window::Problem make_problem(const Camera& camera, const Rows3& X, const Rows44& T, const Indices& view_index,

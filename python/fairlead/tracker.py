@@ -214,7 +214,9 @@ class Refinement:
     noise_factor: float
     """Estimated ratio of the true to the told pixel covariances [-]."""
     prior_factor: float
-    """Estimated ratio of the true to the told model covariance [-]."""
+    """Estimated ratio of the true to the told model covariance [-]; the covariance is reported with it."""
+    prior_factor_believed: float
+    """The smallest that the data allow [-]; the model is estimated with it, docs/estimator.md eq. (16)."""
     cost: float
     """Negative log posterior at the optimum [-]."""
     iterations: int
@@ -236,7 +238,7 @@ def refine(views: Iterable[View], target: Target, camera: Camera, options: Track
     views = tuple(views)
     index = LandmarkIndex(target.landmarks)
     sizes = np.array([len(view.landmarks) for view in views], dtype=np.int32)
-    estimates, X, P, noise, prior, cost, iterations, converged = _core.refine(
+    estimates, X, P, noise, prior, believed, cost, iterations, converged = _core.refine(
         core_camera(camera),
         target.positions,
         target.covariance,
@@ -252,6 +254,7 @@ def refine(views: Iterable[View], target: Target, camera: Camera, options: Track
         model=replace(target, positions=X, covariance=P),
         noise_factor=noise,
         prior_factor=prior,
+        prior_factor_believed=believed,
         cost=cost,
         iterations=iterations,
         converged=converged,

@@ -21,8 +21,9 @@ struct Refinement {
     std::vector<Vec3> X;              ///< refined landmarks [m]
     MatX covariance;                  ///< 3N x 3N [m^2]
     double noise_factor = 1.0;
-    double prior_factor = 1.0;
-    double cost = 0.0;  ///< negative log posterior at the optimum
+    double prior_factor = 1.0;           ///< likely; the covariance is reported with it
+    double prior_factor_believed = 1.0;  ///< the model is estimated with it
+    double cost = 0.0;                   ///< negative log posterior at the optimum
     int iterations = 0;
     bool converged = false;
 };

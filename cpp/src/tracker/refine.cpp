@@ -234,6 +234,7 @@ Refinement Batch::result() {
     if (last_.ok) window::add_gauge_curvature(problem_.X, refinement.covariance);
     refinement.noise_factor = problem_.noise_factor;
     refinement.prior_factor = problem_.prior_factors.likely;
+    refinement.prior_factor_believed = problem_.prior_factors.believed;
     refinement.cost = last_.cost;
     refinement.iterations = iterations_;
     refinement.converged = last_.converged;

@@ -123,7 +123,7 @@ def nees(samples: Sequence[NormalisedSquare | None]) -> Nees | None:
 
 
 def pose_difference(T_estimated: Matrix4, T_true: Matrix4) -> Vector6:
-    """The error that the covariance speaks of, e = (R_est^T (t_true - t_est), Log(R_est^T R_true)), target axes [m, rad].
+    """e = (R_est^T (t_true - t_est), Log(R_est^T R_true)), the error that the covariance speaks of [m, rad].
 
     To first order the xi of T_true = T_est Exp(xi), without the exact logarithm's product of rotation and range error,
     which would be taken for an error across the line of sight, docs/bound.md eq. (15).
