@@ -62,7 +62,7 @@ constexpr auto subtract_tile = subtract_portable;
 RankUpdate::RankUpdate(int rows, int capacity)
     : rows_(rows),
       capacity_(capacity),
-      Y_(static_cast<std::size_t>((rows + kPanel - 1) / kPanel * kPanel * capacity), 0.0) {}
+      Y_(static_cast<std::size_t>((rows + kPanel - 1) / kPanel * kPanel) * static_cast<std::size_t>(capacity), 0.0) {}
 
 void RankUpdate::subtract_from(MatX& S) noexcept {
     for (int i = 0; i < rows_; i += kPanel) {

@@ -24,8 +24,10 @@ class RankUpdate {
 
     /// Element of the column that comes `offset` after those already taken.
     double& at(int row, int offset) noexcept {
-        const int panel = row / kPanel;
-        return Y_[static_cast<std::size_t>((panel * capacity_ + columns_ + offset) * kPanel + row % kPanel)];
+        const auto panel = static_cast<std::size_t>(row / kPanel);
+        const auto column = static_cast<std::size_t>(columns_) + static_cast<std::size_t>(offset);
+        return Y_[(panel * static_cast<std::size_t>(capacity_) + column) * kPanel +
+                  static_cast<std::size_t>(row % kPanel)];
     }
     void take(int columns) noexcept { columns_ += columns; }
 
