@@ -169,7 +169,7 @@ def test_help_names_every_verb_and_loads_nothing_heavy() -> None:
         "assert not heavy, heavy\n"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    for verb in ("demo", "track", "refine", "evaluate"):
+    for verb in ("demo", "track", "refine", "evaluate", "simulate", "study", "render"):
         assert verb in done.stdout
 
 
