@@ -79,8 +79,8 @@ void Slice::pull_back(MatX& A, MatX& H) noexcept {
 }
 
 void Slice::gauge_rate(GaugeBasis& rate_t) const noexcept {
-    const Mat33 sR_t = (S_.s * S_.R).transpose();
-    for (Eigen::Index j = 0; j < u_.size(); j += 3) rate_t.middleRows<3>(j) = -(sR_t * U_t_.middleRows<3>(j));
+    const Mat33 sR = S_.s * S_.R;
+    for (Eigen::Index j = 0; j < u_.size(); j += 3) rate_t.middleRows<3>(j) = -(sR.transpose() * U_t_.middleRows<3>(j));
 }
 
 }  // namespace fairlead::window

@@ -47,12 +47,12 @@ class Slice {
 
 template <typename Columns>
 void Slice::pull_back(Eigen::MatrixBase<Columns>& C) noexcept {
-    const Mat33 sR_t = (S_.s * S_.R).transpose();
+    const Mat33 sR = S_.s * S_.R;
     for (Eigen::Index c = 0; c < C.cols(); ++c) {
         const Eigen::Matrix<double, 7, 1> along = N_.transpose() * C.col(c);
         C.col(c).noalias() -= U_t_ * along;
         for (Eigen::Index j = 0; j < C.rows(); j += 3)
-            C.col(c).template segment<3>(j) = (sR_t * C.col(c).template segment<3>(j)).eval();
+            C.col(c).template segment<3>(j) = (sR.transpose() * C.col(c).template segment<3>(j)).eval();
     }
 }
 
