@@ -70,6 +70,7 @@ lock:
 .PHONY: bench
 bench: setup
 	$(BIN)/python -m benchmarks
+	$(BIN)/python -m benchmarks.speed --output runs/speed
 
 ## docs     check that every equation that a source names exists, and every link of the pages
 .PHONY: docs

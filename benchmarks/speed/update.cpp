@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: fairlead contributors
 // SPDX-License-Identifier: Apache-2.0
-// Processor time of each update() of a flight: update FLIGHT TIMES REPEATS. The flight is what
-// benchmarks/speed/update.py writes; TIMES gets float64 seconds, one row of frames per repeat; stdout the number of
-// frames without a pose and the views in the window at the end.
+// Processor time of each update() of a flight: update FLIGHT TIMES REPEATS VIEWS. The flight is what
+// benchmarks/speed/update.py writes, VIEWS the size of the window; TIMES gets float64 seconds, one row of frames per
+// repeat; stdout the number of frames without a pose and the first frame that met a full window.
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <exception>
@@ -55,33 +56,36 @@ double thread_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-int fly(const Flight& flight, std::vector<double>& seconds, int& views) {
+int fly(const Flight& flight, int max_views, std::vector<double>& seconds, std::size_t& full) {
     const std::vector<Vec3> sigma(flight.X0.size(), Vec3::Constant(flight.prior_sigma_m));
-    Tracker tracker(flight.camera, flight.X0, window::landmark_covariance(flight.X0, sigma, 0.0));
+    TrackerOptions options;
+    options.max_views = max_views;
+    Tracker tracker(flight.camera, flight.X0, window::landmark_covariance(flight.X0, sigma, 0.0), options);
     int without_pose = 0;
+    full = flight.views.size();
     for (std::size_t frame = 0; frame < flight.views.size(); ++frame) {
+        if (tracker.views_in_window() == max_views) full = std::min(full, frame);
         const double begin = thread_seconds();
         const Estimate estimate = tracker.update(flight.stamps_ns[frame], flight.views[frame]);
         seconds.push_back(thread_seconds() - begin);
         if (estimate.status != Status::tracking) ++without_pose;
     }
-    views = tracker.views_in_window();
     return without_pose;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-    if (argc != 4) throw std::runtime_error("usage: update FLIGHT TIMES REPEATS");
+    if (argc != 5) throw std::runtime_error("usage: update FLIGHT TIMES REPEATS VIEWS");
     const Flight flight = read_flight(argv[1]);
     std::vector<double> seconds;
     int without_pose = 0;
-    int views = 0;
-    for (int repeat = 0; repeat < std::atoi(argv[3]); ++repeat) without_pose = fly(flight, seconds, views);
+    std::size_t full = 0;
+    for (int repeat = 0; repeat < std::atoi(argv[3]); ++repeat) without_pose = fly(flight, std::atoi(argv[4]), seconds, full);
     std::ofstream out(argv[2], std::ios::binary);
     out.write(reinterpret_cast<const char*>(seconds.data()),
               static_cast<std::streamsize>(seconds.size() * sizeof(double)));
-    std::cout << without_pose << ' ' << views << '\n';
+    std::cout << without_pose << ' ' << full << '\n';
     return out.flush() ? 0 : 2;
 } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

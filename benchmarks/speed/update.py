@@ -21,7 +21,9 @@ from fairlead.tracker import Tracker
 from fairlead.types import Camera, Target, View
 
 KEYFRAMES = 64
-"""Views in the window; frames before it is full are not counted."""
+"""Views in the window of everybody."""
+WINDOWS = (KEYFRAMES, 256)
+"""Views in the window of ours: as the peers', and the default. Frames before it is full are not counted."""
 PEER_FRAMES = 32
 REPEATS = 5
 
@@ -57,20 +59,21 @@ def make_flight(frames: int, outlier_fraction: float = 0.0) -> Flight:
     return Flight(target=told, camera=camera, views=tuple(orbit_views(target, camera, scenario, rng)))
 
 
-def core_times(program: Path, flight: Flight, repeats: int = REPEATS) -> np.ndarray:
-    """Seconds of each C++ update(): per frame the median over repeats of the same flight; a neighbour does not count.
+def core_times(program: Path, flight: Flight, max_views: int, repeats: int = REPEATS) -> tuple[int, np.ndarray]:
+    """The first frame that met a full window, and the seconds of each C++ update() from there on.
 
-    Raises RuntimeError if a frame went without a pose: a time without a result is none.
+    Per frame the median over repeats of the same flight; a neighbour does not count. Raises RuntimeError if a frame
+    went without a pose, or the window never filled: a time without a result is none.
     """
     with tempfile.TemporaryDirectory() as folder:
         source, times = Path(folder) / "flight.bin", Path(folder) / "times.bin"
         flight.write(source)
-        command = [program, source, times, str(repeats)]
+        command = [program, source, times, str(repeats), str(max_views)]
         done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, **ONE_THREAD})
-        without_pose, window = map(int, done.stdout.split())
-        if without_pose or window != KEYFRAMES:
-            raise RuntimeError(f"update(): {without_pose} frames without a pose, {window} views in the window")
-        return np.median(np.fromfile(times, dtype="<f8").reshape(repeats, -1), axis=0)
+        without_pose, full = map(int, done.stdout.split())
+        if without_pose or full >= len(flight.views):
+            raise RuntimeError(f"update(): {without_pose} frames without a pose, window full from frame {full} on")
+        return full, np.median(np.fromfile(times, dtype="<f8").reshape(repeats, -1), axis=0)[full:]
 
 
 def python_times(flight: Flight, repeats: int = REPEATS) -> np.ndarray:
@@ -186,14 +189,16 @@ def measure_updates(programs: dict[str, Path], frames: int, say: Callable[[str],
     rows = []
     for data, fraction in (("", 0.0), (", 10 % outliers", 0.1)):
         flight = make_flight(frames, fraction)
-        counted = f"{KEYFRAMES} to {frames}"
         for name, folder in programs.items():
-            say(f"update(): C++ {name}{data}")
-            seconds = core_times(folder / "update", flight)[KEYFRAMES:]
-            rows.append(describe(f"fairlead, C++ {name}{data}", seconds, counted))
+            for max_views in WINDOWS:
+                say(f"update(): C++ {name}, window of {max_views}{data}")
+                full, seconds = core_times(folder / "update", flight, max_views)
+                label = f"fairlead, C++ {name}, window of {max_views}{data}"
+                rows.append(describe(label, seconds, f"{full} to {frames}"))
         if not fraction:
             say("update(): through Python")
-            rows.append(describe("fairlead, Python", python_times(flight)[KEYFRAMES:], counted))
+            seconds = python_times(flight)[WINDOWS[-1] :]
+            rows.append(describe("fairlead, Python, window of 256", seconds, f"{WINDOWS[-1]} to {frames}"))
     try:
         short = replace(make_flight(KEYFRAMES + PEER_FRAMES + 1))
         for name, measure in (("GTSAM, iSAM2", isam2_times), ("GTSAM, window of 64 solved again", window_times)):
