@@ -62,7 +62,7 @@ stubs: setup
 .PHONY: lock
 lock:
 	uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header --python-version 3.11 \
-	    --group dev --output-file requirements/dev.txt pyproject.toml > /dev/null
+	    --override requirements/override.txt --group dev --output-file requirements/dev.txt pyproject.toml > /dev/null
 	echo 'opencv-python-headless>=4.10,<5' | uv pip compile --quiet --universal --generate-hashes --no-annotate --no-header \
 	    --no-deps --python-version 3.11 --output-file requirements/opencv4.txt - > /dev/null
 
@@ -91,6 +91,11 @@ $(STAMPS)/environment: requirements/dev.txt
 	$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements/dev.txt
 	@touch $@
 
+# torch has a build for each kind of processor and accelerator, so it is pinned by version and not by hash.
+$(STAMPS)/torch: $(STAMPS)/environment
+	$(BIN)/python -m pip install --quiet torch==2.13.0
+	@touch $@
+
 $(STAMPS)/package: $(STAMPS)/environment pyproject.toml VERSION $(CMAKE_FILES) $(filter-out cpp/tests/% examples/%,$(CPP_SOURCES))
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-build-isolation --no-deps --editable .
 	@touch $@
@@ -108,7 +113,7 @@ $(STAMPS)/ruff: $(STAMPS)/environment pyproject.toml $(PYTHON_SOURCES)
 	$(BIN)/ruff check .
 	@touch $@
 
-$(STAMPS)/pyright: $(STAMPS)/environment pyproject.toml $(call find,python,-name '*.py' -o -name '*.pyi')
+$(STAMPS)/pyright: $(STAMPS)/torch pyproject.toml $(call find,python,-name '*.py' -o -name '*.pyi')
 	$(BIN)/pyright --pythonpath $(BIN)/python
 	@touch $@
 
@@ -164,5 +169,5 @@ $(STAMPS)/opencv4: $(STAMPS)/environment requirements/opencv4.txt
 	@touch $@
 
 .PHONY: pytest
-pytest: setup
+pytest: setup $(STAMPS)/torch
 	$(BIN)/python -m pytest --numprocesses $(JOBS) --dist loadgroup --quiet
