@@ -146,6 +146,8 @@ class RenderConfig:
     """Folder of the same sequence at full quality: its light is developed anew, with other weather."""
     count: int = 1000
     """How many crops."""
+    empty: float = 0.0
+    """Share of the crops without the target, often with another ship in its place [-]."""
     size: int = 256
     """Side of a crop [px]."""
     seed: int = 0
@@ -159,8 +161,8 @@ class RenderConfig:
         ):
             raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
         least = min(self.samples, self.stride, self.count, self.jobs, 1 if self.frames is None else self.frames)
-        if least < 1 or not 32 <= self.size <= 2048 or self.seed < 0:
-            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed not below 0")
+        if least < 1 or not 32 <= self.size <= 2048 or self.seed < 0 or not 0.0 <= self.empty <= 1.0:
+            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed >= 0, --empty 0 to 1")
 
 
 @dataclass(frozen=True, kw_only=True)
