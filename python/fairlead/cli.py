@@ -17,14 +17,18 @@ import tyro
 from tyro.conf import subcommand
 
 from fairlead.config import (
+    CalibrateConfig,
     Config,
     DemoConfig,
     EvaluateConfig,
+    ExportConfig,
+    NetworkConfig,
     RefineConfig,
     RenderConfig,
     SimulateConfig,
     StudyConfig,
     TrackConfig,
+    TrainConfig,
     UsageError,
 )
 from fairlead.io.errors import InputError, one_line
@@ -43,6 +47,9 @@ _Command = (
     | Annotated[SimulateConfig, subcommand("simulate")]
     | Annotated[RenderConfig, subcommand("render")]
     | Annotated[StudyConfig, subcommand("study")]
+    | Annotated[TrainConfig, subcommand("train")]
+    | Annotated[CalibrateConfig, subcommand("calibrate")]
+    | Annotated[ExportConfig, subcommand("export")]
 )
 
 
@@ -101,6 +108,8 @@ def _run(config: Config) -> int:
         return _render(config)
     if isinstance(config, StudyConfig):
         return _study(config)
+    if isinstance(config, NetworkConfig):
+        return _network(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -145,6 +154,19 @@ def _render(config: RenderConfig) -> int:
     except RenderError as error:
         return _complain(str(error), 2)
     sys.stdout.write(f"{config.output}: {made} pictures made\n")
+    return 0
+
+
+def _network(config: NetworkConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.train.command import MissingTraining, calibrate, export, train
+
+    verb = {TrainConfig: train, CalibrateConfig: calibrate, ExportConfig: export}[type(config)]
+    try:
+        lines = verb(**vars(config), progress=progress_bar)
+    except MissingTraining as error:
+        return _complain(str(error), 2)
+    sys.stdout.write("".join(f"{line}\n" for line in lines))
     return 0
 
 

@@ -6,6 +6,7 @@ Works with OpenCV 4 and 5. Every pose that comes back was checked (docs/baseline
 measured by its header before it was decoded. `cv2.FileStorage` is not used: it corrupts the heap on malformed files.
 """
 
+from fairlead.opencv.filters import warp_affine
 from fairlead.opencv.images import GreyImage, Image, grey, image_size, read_image
 from fairlead.opencv.markers import (
     FoundCorners,
@@ -38,4 +39,5 @@ __all__ = [
     "read_image",
     "refine",
     "sqpnp",
+    "warp_affine",
 ]
