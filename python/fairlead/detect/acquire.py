@@ -151,7 +151,8 @@ def _examine(network: Network, model: RoughModel, image: Image, candidate: _Cand
         settled = apart < _SETTLED * square[1] and abs(square[1] / max(side, 1.0) - 1.0) < 2.0 * _SETTLED
         middle, side = square
         if settled:
-            return sighting if believed(sighting, settings.min_landmarks, settings.min_score) else None
+            needed = min(settings.min_landmarks, int(np.count_nonzero(model.known)))
+            return sighting if believed(sighting, needed, settings.min_score) else None
     return None
 
 
@@ -160,5 +161,4 @@ def believed(sighting: Sighting, min_landmarks: int, min_score: float) -> bool:
     agreed = sighting.agreement
     if agreed is None:
         return False
-    needed = min(min_landmarks, len(agreed.inliers))
-    return int(np.count_nonzero(agreed.inliers)) >= needed and agreed.score >= min_score
+    return int(np.count_nonzero(agreed.inliers)) >= min_landmarks and agreed.score >= min_score
