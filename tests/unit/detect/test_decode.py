@@ -100,7 +100,8 @@ def test_a_broad_peak_widens_the_covariance_if_the_card_says_so() -> None:
         for sigma in (0.7, 1.0)
     ]
     for S, sigma in zip(told, (0.7, 1.0), strict=True):
-        assert S == pytest.approx(4.0 * np.eye(2) + 0.5 * 16.0 * sigma**2 * np.eye(2), rel=0.05, abs=0.05)
+        expected = (4.0 + 0.5 * 16.0 * sigma**2) * np.eye(2)
+        assert pytest.approx(expected, rel=0.05, abs=0.05) == S
     x = simcc_label(np.array([50.0]), 384)
     simcc = card(Decoding(kind="simcc", beta=0.0, window=40.0), 1, sigma_px=(2.0,), spread_factor=1.0)
     assert decode(simcc, [x, x]).covariances[0] == pytest.approx((4.0 + (5.66 / 2.0) ** 2) * np.eye(2), rel=0.02)

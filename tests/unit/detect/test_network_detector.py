@@ -51,9 +51,7 @@ def worst(view: View, truth: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("make", [heat, simcc, heatmap])
-@pytest.mark.parametrize(
-    ("depth_m", "aside_m"), [(60.0, (14.0, -9.0)), (110.0, (-30.0, 22.0)), (28.0, (0.0, 0.0))]
-)
+@pytest.mark.parametrize(("depth_m", "aside_m"), [(60.0, (14.0, -9.0)), (110.0, (-30.0, 22.0)), (28.0, (0.0, 0.0))])
 def test_it_is_found_anywhere_through_a_lens(
     tmp_path: Path, make: Callable[[Path], Path], depth_m: float, aside_m: tuple[float, float]
 ) -> None:
@@ -92,10 +90,10 @@ class Counting:
 
         def started(*arguments: object) -> View:
             self.looks.append(0)
-            return detect(*arguments)  # pyright: ignore
+            return detect(*arguments)  # pyright: ignore[reportArgumentType]
 
-        network.look = counted  # pyright: ignore
-        detector.detect = started  # pyright: ignore
+        network.look = counted  # pyright: ignore[reportAttributeAccessIssue]
+        detector.detect = started  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def flight(k: int) -> Matrix4:
@@ -181,7 +179,10 @@ def test_the_target_with_its_landmarks_mixed_up_is_another(tmp_path: Path) -> No
 
 def test_the_pose_from_detected_pixels_is_the_true_one(tmp_path: Path) -> None:
     camera = wide_camera()
-    detector, tracker = NetworkDetector(heat(tmp_path), spots_target(0.001), camera), Tracker(spots_target(0.001), camera)
+    detector, tracker = (
+        NetworkDetector(heat(tmp_path), spots_target(0.001), camera),
+        Tracker(spots_target(0.001), camera),
+    )
     for k in range(10):
         T = flight(k)
         estimate = tracker.update(detector.detect(draw(camera, T).image, k, k * STEP_NS))
@@ -223,7 +224,7 @@ def test_only_landmarks_of_the_target_are_reported(tmp_path: Path) -> None:
 
 def test_a_specification_that_ends_in_onnx_is_a_network(tmp_path: Path) -> None:
     assert isinstance(detector_from_spec(str(heat(tmp_path)), spots_target(), wide_camera()), NetworkDetector)
-    with pytest.raises(ValueError, match="needs a target and a camera"):
+    with pytest.raises(ValueError, match="expected a target and a camera"):
         detector_from_spec(str(heat(tmp_path)))
     with pytest.raises(ValueError, match="expected one of"):
         detector_from_spec("no-such-ship", spots_target(), wide_camera())
