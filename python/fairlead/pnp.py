@@ -39,7 +39,7 @@ def robust_pose(
 
     None for fewer than four usable observations, or no pose with four inliers in front of the camera.
     """
-    definite = np.isfinite(pixels).all(axis=1) & np.isfinite(covariances).all(axis=(1, 2))
+    definite = np.isfinite(pixels.sum(axis=1) + covariances.sum(axis=(1, 2)))
     S = np.where(definite[:, None, None], covariances, np.eye(2))
     definite &= (S[:, 0, 0] > 0.0) & (S[:, 0, 0] * S[:, 1, 1] - S[:, 0, 1] * S[:, 1, 0] > 0.0)
     if np.count_nonzero(definite) < MIN_POINTS:

@@ -8,19 +8,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from fairlead.detect.agreement import Agreement, RoughModel, agreement
-from fairlead.detect.keypoints import Keypoints
-from fairlead.detect.onnx import Network
+from fairlead.detect.keypoints import Keypoints, LandmarkNetwork
 from fairlead.detect.onnx.session import MULTIPLE_PX
 from fairlead.detect.roi import projected_square
 from fairlead.detect.window import Window, window_about
 from fairlead.opencv import Image
+from fairlead.pnp import MIN_POINTS
 
 MAX_CANDIDATES = 3
 """Of one pass that are looked at."""
 LOOKS = 3
 """At a candidate, each framed by what the one before it found."""
-_SETTLED = 0.1
-"""Share of the side by which the frame may be off for a look to count."""
+FINE_LOOKS = 8
+"""At squares of the pass after the last, for each image: a target of few pixels is found a few images later."""
+MIN_FINE_PX = 48
+"""No smaller squares are searched."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,7 +42,7 @@ class _Candidate:
     rank: float
 
 
-def look(network: Network, model: RoughModel, image: Image, window: Window, threshold: float) -> Sighting:
+def look(network: LandmarkNetwork, model: RoughModel, image: Image, window: Window, threshold: float) -> Sighting:
     """Run the network on a window; which pose do the landmarks above the threshold agree with?"""
     keypoints = network.look(window.cut(image)).in_image(window)
     seen = keypoints.above(threshold)
@@ -48,7 +50,7 @@ def look(network: Network, model: RoughModel, image: Image, window: Window, thre
     return Sighting(window=window, keypoints=keypoints, agreement=found)
 
 
-def weights(network: Network, keypoints: Keypoints) -> np.ndarray:
+def weights(network: LandmarkNetwork, keypoints: Keypoints) -> np.ndarray:
     """(n,) how surely each is seen: the logistic function of a logit, 1 for peaks, whose height has no such meaning."""
     if network.card.decoding.kind != "pixels":
         return np.ones(len(keypoints.scores))
@@ -56,12 +58,17 @@ def weights(network: Network, keypoints: Keypoints) -> np.ndarray:
         return np.nan_to_num(1.0 / (1.0 + np.exp(-keypoints.scores)))
 
 
-def acquire(network: Network, model: RoughModel, image: Image) -> Sighting | None:
-    """The target anywhere in the image, or None. The passes go from coarse to fine and end with the first success."""
+def acquire(network: LandmarkNetwork, model: RoughModel, image: Image, attempt: int = 0) -> Sighting | None:
+    """The target anywhere in the image, or None. The passes go from coarse to fine and end with the first success.
+
+    `attempt` counts the images that were searched in vain: the pass after the last one is shared among them.
+    """
     settings = network.card.acquisition
-    for level in range(settings.levels):
+    height, width = image.shape[:2]
+    passes = [tuple(scan(width, height, level, network)) for level in range(settings.levels)]
+    for windows in (*passes, fine_share(width, height, settings.levels, network, attempt)):
         candidates: list[_Candidate] = []
-        for window in scan(image.shape[1], image.shape[0], level, network):
+        for window in windows:
             sighting = look(network, model, image, window, settings.visible_threshold)
             candidates += _candidates(network, model, sighting)
         for candidate in _best(candidates):
@@ -71,7 +78,7 @@ def acquire(network: Network, model: RoughModel, image: Image) -> Sighting | Non
     return None
 
 
-def scan(width: int, height: int, level: int, network: Network) -> Iterator[Window]:
+def scan(width: int, height: int, level: int, network: LandmarkNetwork) -> Iterator[Window]:
     """The windows of one pass: squares of the longer side over 2^level, half overlapping; one large window where the
     network takes any size.
     """
@@ -84,9 +91,21 @@ def scan(width: int, height: int, level: int, network: Network) -> Iterator[Wind
         corner = ((width - extent[0]) // 2, (height - extent[1]) // 2)
         yield Window(corner=corner, extent=(extent[0], extent[1]), size=(size[0], size[1]))
         return
+    yield from _squares(width, height, side, network.size)
+
+
+def fine_share(width: int, height: int, level: int, network: LandmarkNetwork, attempt: int) -> tuple[Window, ...]:
+    """Of the squares of a pass FINE_LOOKS, other ones at each attempt."""
+    side = max(width, height) / 2.0**level
+    squares = tuple(_squares(width, height, side, network.size)) if side >= MIN_FINE_PX else ()
+    first = (attempt * FINE_LOOKS) % max(1, len(squares))
+    return squares[first : first + FINE_LOOKS]
+
+
+def _squares(width: int, height: int, side: float, size: tuple[int, int]) -> Iterator[Window]:
     for v in _centres(height, side):
         for u in _centres(width, side):
-            yield window_about(np.array([u, v]), side, network.size)
+            yield window_about(np.array([u, v]), side, size)
 
 
 def _centres(length: int, side: float) -> np.ndarray:
@@ -96,8 +115,8 @@ def _centres(length: int, side: float) -> np.ndarray:
     return np.linspace(first, length - 1 - first, steps)
 
 
-def _candidates(network: Network, model: RoughModel, sighting: Sighting) -> list[_Candidate]:
-    """A square about what agrees with a pose, and one about where most of the landmarks are."""
+def _candidates(network: LandmarkNetwork, model: RoughModel, sighting: Sighting) -> list[_Candidate]:
+    """A square about what agrees with a pose, if there is one, then one about where most of the landmarks are."""
     found: list[_Candidate] = []
     agreed = sighting.agreement
     if agreed is not None:
@@ -106,16 +125,35 @@ def _candidates(network: Network, model: RoughModel, sighting: Sighting) -> list
             rank = 1.0 + float(np.count_nonzero(agreed.inliers))
             found.append(_Candidate(middle=square[0], side=square[1], rank=rank))
     seen = sighting.keypoints.above(network.card.acquisition.visible_threshold) & model.known
-    if np.count_nonzero(seen) >= 4:
-        z = sighting.keypoints.pixels[seen]
-        middle = np.median(z, axis=0)
-        away = np.abs(z - middle).max(axis=1)
-        near = away <= 2.5 * np.median(away)
-        middle = 0.5 * (z[near].min(axis=0) + z[near].max(axis=0))
-        side = float(np.ptp(z[near], axis=0).max())
-        rank = float(weights(network, sighting.keypoints)[seen][near].sum())
-        found.append(_Candidate(middle=(float(middle[0]), float(middle[1])), side=side, rank=rank))
+    crowd = _crowd(sighting.keypoints.pixels[seen], sighting.window)
+    if crowd is not None:
+        middle, side, count = crowd
+        found.append(_Candidate(middle=middle, side=side, rank=float(count)))
     return found
+
+
+def _crowd(pixels: np.ndarray, window: Window) -> tuple[tuple[float, float], float, int] | None:
+    """The square with more keypoints than chance would put there, by the binomial law: n KL(k/n || share of the area).
+
+    Squares about each keypoint that reach to each other one are compared. None for fewer than four keypoints.
+    """
+    n = len(pixels)
+    if n < MIN_POINTS:
+        return None
+    reach = np.sort(np.abs(pixels[:, None] - pixels).max(axis=2), axis=1)  # (n, n), the first is 0
+    area = float(np.prod(window.extent))
+    share = np.clip((2.0 * reach + 1.0) ** 2 / area, 1e-9, 1.0 - 1e-9)
+    k = (np.arange(n) + 1.0) / n
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rest = np.where(k < 1.0, (1.0 - k) * np.log((1.0 - k) / (1.0 - share)), 0.0)
+    gain = np.where((k > share) & (np.arange(n) >= MIN_POINTS - 1), k * np.log(k / share) + rest, -np.inf)
+    i, j = np.unravel_index(int(np.argmax(gain)), gain.shape)
+    if not np.isfinite(gain[i, j]):
+        return None
+    near = pixels[np.abs(pixels - pixels[i]).max(axis=1) <= reach[i, j]]
+    low, high = near.min(axis=0), near.max(axis=0)
+    middle = 0.5 * (low + high)
+    return (float(middle[0]), float(middle[1])), float((high - low).max()), len(near)
 
 
 def _square(model: RoughModel, agreed: Agreement) -> tuple[tuple[float, float], float] | None:
@@ -137,21 +175,23 @@ def _alike(a: _Candidate, b: _Candidate) -> bool:
     return apart < 0.15 * larger and min(a.side, b.side) > 0.8 * larger
 
 
-def _examine(network: Network, model: RoughModel, image: Image, candidate: _Candidate) -> Sighting | None:
-    """Look, frame anew by the pose that was found, and believe the look that was framed well."""
-    settings = network.card.acquisition
-    middle, side = candidate.middle, candidate.side
+def _examine(network: LandmarkNetwork, model: RoughModel, image: Image, candidate: _Candidate) -> Sighting | None:
+    """Look, frame anew by what was found, and believe a look that was framed well."""
+    card = network.card
+    needed = min(card.acquisition.min_landmarks, int(np.count_nonzero(model.known)))
+    frame = candidate
     for _ in range(LOOKS):
-        window = window_about(np.array(middle), network.card.input.pad * side, network.size)
-        sighting = look(network, model, image, window, network.card.calibration.visible_threshold)
-        square = None if sighting.agreement is None else _square(model, sighting.agreement)
-        if square is None:
+        window = window_about(np.array(frame.middle), card.input.pad * frame.side, network.size)
+        sighting = look(network, model, image, window, card.calibration.visible_threshold)
+        better = _candidates(network, model, sighting)
+        if not better:
             return None
-        apart = max(abs(p - q) for p, q in zip(square[0], middle, strict=True))
-        settled = apart < _SETTLED * square[1] and abs(square[1] / max(side, 1.0) - 1.0) < 2.0 * _SETTLED
-        middle, side = square
+        settled = sighting.agreement is not None and _alike(better[0], frame)
+        if settled and believed(sighting, needed, card.acquisition.min_score):
+            return sighting
         if settled:
-            return sighting if believed(sighting, settings.min_landmarks, settings.min_score) else None
+            return None
+        frame = better[0]
     return None
 
 
@@ -160,5 +200,4 @@ def believed(sighting: Sighting, min_landmarks: int, min_score: float) -> bool:
     agreed = sighting.agreement
     if agreed is None:
         return False
-    needed = min(min_landmarks, len(agreed.inliers))
-    return int(np.count_nonzero(agreed.inliers)) >= needed and agreed.score >= min_score
+    return int(np.count_nonzero(agreed.inliers)) >= min_landmarks and agreed.score >= min_score

@@ -31,7 +31,7 @@ class RoughModel:
     @property
     def known(self) -> Bool[np.ndarray, "n"]:
         """Which are the target's."""
-        return np.isfinite(self.X_target).all(axis=1)
+        return np.isfinite(self.X_target[:, 0])
 
     def errors_px(self, T_camera_target: Matrix4) -> np.ndarray:
         """(n,) standard deviation that the model's errors make in the image [px]: f sigma / depth."""

@@ -37,7 +37,7 @@ def detector_from_spec(spec: str, target: Target | None = None, camera: Camera |
     path = Path(spec) if spec.endswith(NETWORK_SUFFIX) else shipped_network(spec)
     if path is not None:
         if target is None or camera is None:
-            raise ValueError(f"detector: a network ({path.name}) needs a target and a camera")
+            raise ValueError(f"detector: expected a target and a camera beside network {path.name}")
         from fairlead.detect.network import NetworkDetector
 
         return NetworkDetector(path, target, camera)

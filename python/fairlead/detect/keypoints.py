@@ -3,11 +3,14 @@
 """What a network says of the landmarks of one window."""
 
 from dataclasses import dataclass, replace
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool
 
 from fairlead.detect.window import Window
+from fairlead.io.network_card import NetworkCard
+from fairlead.opencv import Image
 from fairlead.types import PixelCovariances, Pixels, Scores
 
 
@@ -37,3 +40,16 @@ class Keypoints:
                 & np.isfinite(S).all(axis=(1, 2))
                 & definite
             )
+
+
+@runtime_checkable
+class LandmarkNetwork(Protocol):
+    """What acquiring and following need of a network."""
+
+    card: NetworkCard
+    size: tuple[int, int]
+    """Width and height of a crop [px]."""
+
+    def look(self, crop: Image) -> Keypoints:
+        """Keypoints of a crop, in its pixels."""
+        ...

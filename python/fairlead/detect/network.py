@@ -35,6 +35,7 @@ class NetworkDetector:
             raise InputError(path, str(error)) from error
         self._follower = Follower(self._model.X_target[self._model.known], camera, card.input.pad)
         self._threshold = card.calibration.visible_threshold
+        self._in_vain = 0
         self.acquisitions = 0
         """How often the whole image was searched."""
 
@@ -43,8 +44,9 @@ class NetworkDetector:
         sighting = self._followed(image, stamp_ns)
         if sighting is None:
             self.acquisitions += 1
-            sighting = acquire(self.network, self._model, image)
+            sighting = acquire(self.network, self._model, image, self._in_vain)
             self._follower.forget()
+        self._in_vain = self._in_vain + 1 if sighting is None else 0
         if sighting is None:
             return View(
                 frame=frame, stamp_ns=stamp_ns, landmarks=(), pixels=np.empty((0, 2)),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fairlead.opencv import Image
-from fairlead.opencv.crops import cut_resized
+from fairlead.opencv.crops import Crop, cut_resized
 from fairlead.types import PixelCovariances, Pixels
 
 MIN_SIDE_PX = 16
@@ -25,7 +25,7 @@ class Window:
     size: tuple[int, int]
     """Width and height of the crop [px]."""
 
-    def cut(self, image: Image) -> Image:
+    def cut(self, image: Image) -> Crop:
         """The crop: area mean where it shrinks, bilinear where it grows."""
         return cut_resized(image, self.corner, self.extent, self.size)
 

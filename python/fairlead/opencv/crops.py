@@ -3,11 +3,15 @@
 """Rectangles of whole pixels cut out of an image and brought to another size."""
 
 import numpy as np
+from jaxtyping import UInt8
 
 from fairlead.opencv.images import Image
 
+Crop = UInt8[np.ndarray, "rows columns 3"]
+"""Blue, green, red."""
 
-def cut_resized(image: Image, corner: tuple[int, int], extent: tuple[int, int], size: tuple[int, int]) -> Image:
+
+def cut_resized(image: Image, corner: tuple[int, int], extent: tuple[int, int], size: tuple[int, int]) -> Crop:
     """The rectangle whose top-left pixel is `corner`, `extent` (width, height) px, in `size` (width, height) px.
 
     Pixel u of the image lies at (u - corner + 1/2) size / extent - 1/2. Smaller: area mean, every pixel has its share,
@@ -30,7 +34,7 @@ def cut_resized(image: Image, corner: tuple[int, int], extent: tuple[int, int], 
     return np.asarray(cv2.resize(part, size, interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR))
 
 
-def _grown(part: Image, wanted: tuple[int, int, int, int], had: tuple[int, int, int, int]) -> Image:
+def _grown(part: Image, wanted: tuple[int, int, int, int], had: tuple[int, int, int, int]) -> Crop:
     """The part with its edges repeated outwards, or moved to where the rectangle lies if that is off the image."""
     (left, top, right, bottom), (x0, y0, x1, y1) = wanted, had
     columns = np.clip(np.arange(left, right), x0, x1 - 1) - x0

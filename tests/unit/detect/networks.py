@@ -64,7 +64,7 @@ def responses(graph: Graph) -> str:
 
 
 def heat_network(card: NetworkCard | None, size: tuple[int, int] | None = None) -> onnx.ModelProto:
-    """Kind pixels: the centre of mass of each colour, sigmas of 0.5 and 0.25 px, correlated; seen where there is any."""
+    """Kind pixels: the middle of each colour, sigmas of 0.5 and 0.25 px, correlated; seen where there is any."""
     graph = Graph()
     r = responses(graph)
     mass = graph.add("ReduceSum", r, graph.constant([2, 3], np.int64), keepdims=0)

@@ -35,9 +35,9 @@ def _pixels(card: NetworkCard, pixels: np.ndarray, cholesky: np.ndarray, visible
     S = np.empty((len(pixels), 2, 2))
     S[:, 0, 0], S[:, 1, 1] = l11 * l11, l21 * l21 + l22 * l22
     S[:, 0, 1] = S[:, 1, 0] = l11 * l21
-    S *= card.per_landmark(card.calibration.scale)[:, None, None]
-    S += card.calibration.floor_px**2 * np.eye(2)
-    return Keypoints(pixels=pixels, covariances=S, scores=visible)
+    scaled = card.per_landmark(card.calibration.scale)[:, None, None] * S
+    floor = card.calibration.floor_px**2 * np.eye(2)
+    return Keypoints(pixels=pixels, covariances=scaled + floor, scores=visible)
 
 
 def _simcc(card: NetworkCard, x: np.ndarray, y: np.ndarray) -> Keypoints:

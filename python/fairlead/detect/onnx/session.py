@@ -83,7 +83,7 @@ class Network:
         if not fits or inputs[0].type != "tensor(float)":
             expected = f"(1, 3, {free[0] or 'any'}, {free[1] or 'any'}) tensor(float)"
             raise InputError(
-                self.path, f"input {card.name}: expected {expected}, got {inputs[0].shape} {inputs[0].type}"
+                self.path, f"input {card.name}: expected {expected}, got {tuple(inputs[0].shape)} {inputs[0].type}"
             )
 
     def _output_names(self) -> list[str]:
