@@ -138,12 +138,18 @@ class RenderConfig:
     """Let the target heave, roll and pitch."""
     stride: int = 5
     """Every how many frames of the 25 Hz camera one is rendered."""
+    first: int = 0
+    """Number of the frame of that camera to begin with."""
     frames: int | None = None
     """Only so many, from the first on."""
     depth: bool = False
     """Write depth images, too."""
     reuse: Path | None = None
     """Folder of the same sequence at full quality: its light is developed anew, with other weather."""
+    clip: Path | None = None
+    """Folder for the sequence as a video with its truth."""
+    crf: float = 26.0
+    """Constant rate factor of that video: less is better and larger."""
     count: int = 1000
     """How many crops."""
     size: int = 256
@@ -152,15 +158,20 @@ class RenderConfig:
     """Of everything that is drawn by chance."""
     jobs: int = 1
     """Processes."""
+    threads: int | None = None
+    """Of each process at full quality; as many as there are cores if not given."""
 
     def __post_init__(self) -> None:
         if not (
             0.0 <= self.strength <= 1.0 and 1.0 <= self.wind_m_s <= 30.0 and -1.0 <= self.sun_elevation_deg <= 89.0
         ):
             raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
-        least = min(self.samples, self.stride, self.count, self.jobs, 1 if self.frames is None else self.frames)
-        if least < 1 or not 32 <= self.size <= 2048 or self.seed < 0:
-            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed not below 0")
+        counts = (self.samples, self.stride, self.count, self.jobs, self.frames, self.threads)
+        least = min(count for count in counts if count is not None)
+        if not 0.0 <= self.crf <= 51.0:
+            raise UsageError(f"--crf: expected 0 to 51, got {self.crf}")
+        if least < 1 or not 32 <= self.size <= 2048 or min(self.seed, self.first) < 0:
+            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed, --first not below 0")
 
 
 @dataclass(frozen=True, kw_only=True)
