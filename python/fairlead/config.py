@@ -9,10 +9,11 @@ from typing import Annotated, Literal
 from tyro.conf import Positional, arg
 from tyro.constructors import PrimitiveConstructorSpec
 
+from fairlead.types import Autopilot
+
 Method = Literal["map", "window", "epnp"]
 StudyKind = Literal["noise", "angle", "grid"]
 Backend = Literal["threads", "dask"]
-Autopilot = Literal["px4", "ardupilot"]
 
 
 def parse_source(text: str) -> Path | str:
@@ -87,6 +88,19 @@ class TrackConfig(InputConfig):
 
     mcap: Path | None = None
     """ROS 2 messages of every frame: /fairlead/pose, /tf, /diagnostics."""
+    mavlink: str | None = None
+    """Autopilot to tell: udpout:127.0.0.1:14550, udpin:HOST:PORT, tcp:HOST:PORT, /dev/ttyACM0:921600; then --autopilot
+    and --mount too."""
+    autopilot: Autopilot | None = None
+    """Which rules it follows."""
+    mount: Path | None = None
+    """mount.toml: where the camera sits on the vehicle."""
+    mavlink_key: Path | None = None
+    """File with the secret that messages are signed with: 32 bytes or 64 hexadecimal digits."""
+    mavlink_systems: tuple[int, ...] = (1,)
+    """System ids that are listened to; the first one is the vehicle."""
+    mavlink_rate: float = 20.0
+    """Estimates sent at most [1/s]."""
     parquet: bool = False
     """Write poses.parquet at the end, too."""
 

@@ -210,7 +210,7 @@ def _input_paths(config: InputConfig) -> dict[str, Path]:
     paths = {"target": config.target}
     more = {"camera": config.camera, "options": config.options, "truth": config.truth}
     if isinstance(config, TrackConfig):
-        more |= {"range": config.range, "attitude": config.attitude}
+        more |= {"range": config.range, "attitude": config.attitude, "mount": config.mount}
     if isinstance(config.source, Path):
         paths = {"source": config.source} | paths
     return paths | {role: path for role, path in more.items() if path is not None}

@@ -4,6 +4,7 @@
 
 import contextlib
 import json
+import socket
 from pathlib import Path
 
 import numpy as np
@@ -71,6 +72,25 @@ def test_every_sink_has_every_frame(clip: Clip, tmp_path: Path) -> None:
     assert table["stamp_ns"].to_pylist() == [e.stamp_ns for e in estimates]
     for timing in read_timing(tmp_path / "run" / "timing.csv"):
         assert min(timing.read_ms, timing.detect_ms, timing.update_ms, timing.sinks_ms) > 0.0
+
+
+def test_an_autopilot_hears_of_it(clip: Clip, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    short = clip.first(SHORT)
+    video = short.write_video(tmp_path / "clip.mkv")
+    (tmp_path / "mount.toml").write_text("[camera]\npitch_deg = -90.0\n")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as pilot:
+        pilot.bind(("127.0.0.1", 0))
+        pilot.settimeout(0.0)
+        address = f"udpout:127.0.0.1:{pilot.getsockname()[1]}"
+        assert main(short.arguments(video, tmp_path / "run", "--mavlink", address)) == 2
+        assert "expected --autopilot and --mount too" in capsys.readouterr().err
+        more = ["--mavlink", address, "--autopilot", "ardupilot", "--mount", str(tmp_path / "mount.toml")]
+        assert main(short.arguments(video, tmp_path / "run", *more)) == 0
+        kinds = set()
+        with contextlib.suppress(BlockingIOError):
+            while data := pilot.recv(2048):
+                kinds.add(int.from_bytes(data[7:10], "little"))
+    assert {0, 111, 149, 253, 511} <= kinds  # heartbeat, TIMESYNC, LANDING_TARGET, STATUSTEXT, TARGET_RELATIVE
 
 
 def test_sinks_do_not_write_over_what_is_read(clip: Clip, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
