@@ -17,6 +17,7 @@ from fairlead.opencv.markers import (
 )
 from fairlead.opencv.pnp import MIN_POINTS, PnpSolution, epnp, ideal_pixels, ippe, refine, sqpnp
 from fairlead.opencv.pnp_views import epnp_views
+from fairlead.opencv.silhouettes import filled_triangles
 
 __all__ = [
     "MIN_POINTS",
@@ -28,6 +29,7 @@ __all__ = [
     "chessboard_corners",
     "epnp",
     "epnp_views",
+    "filled_triangles",
     "grey",
     "ideal_pixels",
     "image_size",

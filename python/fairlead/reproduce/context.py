@@ -7,6 +7,7 @@ from pathlib import Path
 
 from fairlead.config import ReproduceConfig
 from fairlead.io.shipped import shipped_data
+from fairlead.io.target import load_target
 from fairlead.progress import ProgressFactory
 from fairlead.reproduce.bounds import Bound, bound, causal_bound
 from fairlead.reproduce.detections import Detections, Network, detect, networks_of
@@ -14,6 +15,7 @@ from fairlead.reproduce.measured import Measured, Observed, measure, observe
 from fairlead.reproduce.methods import Flight, Track
 from fairlead.reproduce.sequences import Sequence, find_sequences
 from fairlead.reproduce.work import flight_of, job_of, run_job
+from fairlead.types import Target
 
 Pair = tuple[str, str]
 """Names of a sequence and a network."""
@@ -43,6 +45,8 @@ class Context:
 
     config: ReproduceConfig
     progress: ProgressFactory
+    target: Target = field(init=False)
+    """Of sequences that have none of their own."""
     sequences: list[Sequence] = field(init=False)
     networks: list[Network] = field(init=False)
     _detections: dict[Pair, Detections | None] = field(default_factory=dict)
@@ -54,6 +58,7 @@ class Context:
         frigate = shipped_data("frigate")
         folders = self.config.sequences or _shipped_clips()
         target = self.config.target or frigate / "target.toml"
+        self.target = load_target(target)
         self.sequences = find_sequences(folders, target, self.cache / "tables")
         files = self.config.networks or tuple(sorted(frigate.glob("*.onnx")))
         self.networks = networks_of(files, self.sequences)

@@ -86,7 +86,7 @@ _VERSION = 2
 
 def _key(job: Job) -> str:
     """Of the estimator, its options, what is told and what is true."""
-    digest = hashlib.sha256(_core_digest().encode("ascii"))
+    digest = hashlib.sha256(core_digest().encode("ascii"))
     digest.update(json.dumps([_VERSION, dataclasses.asdict(job.options), job.methods], sort_keys=True).encode("utf-8"))
     flight = job.flight
     readings = [[r.stamp_ns, r.range_m, r.sigma_m] for r in flight.ranges]
@@ -107,6 +107,6 @@ def _key(job: Job) -> str:
 
 
 @cache
-def _core_digest() -> str:
+def core_digest() -> str:
     """Of the compiled estimator: another one gives other answers."""
     return hashlib.sha256(Path(_core.__file__).read_bytes()).hexdigest()

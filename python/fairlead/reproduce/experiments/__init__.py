@@ -6,17 +6,28 @@ from collections.abc import Callable
 
 from fairlead.reproduce.content import Section
 from fairlead.reproduce.context import Context
+from fairlead.reproduce.experiments.curves import curves
+from fairlead.reproduce.experiments.failures import failures
 from fairlead.reproduce.experiments.landmarks import landmarks
 from fairlead.reproduce.experiments.model import model
+from fairlead.reproduce.experiments.overlay import overlay
 from fairlead.reproduce.experiments.poses import poses
+from fairlead.reproduce.experiments.single_landmarks import single_landmarks
+from fairlead.reproduce.experiments.studies import angle, noise
 from fairlead.reproduce.experiments.times import times
 
 Experiment = Callable[[Context], Section]
 
 EXPERIMENTS: dict[str, Experiment] = {
+    "noise": noise,
+    "angle": angle,
     "landmarks": landmarks,
     "poses": poses,
     "model": model,
     "times": times,
+    "overlay": overlay,
+    "curves": curves,
+    "single_landmarks": single_landmarks,
+    "failures": failures,
 }
 """In the order of the report."""
