@@ -55,13 +55,16 @@ class Context:
     _bounds: dict[Pair, Bounds] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        frigate = shipped_data("frigate")
         folders = self.config.sequences or _shipped_clips()
-        target = self.config.target or frigate / "target.toml"
-        self.target = load_target(target)
-        self.sequences = find_sequences(folders, target, self.cache / "tables")
-        files = self.config.networks or tuple(sorted(frigate.glob("*.onnx")))
+        self.target = load_target(self.target_path)
+        self.sequences = find_sequences(folders, self.target_path, self.cache / "tables")
+        files = self.config.networks or tuple(sorted(shipped_data("frigate").glob("*.onnx")))
         self.networks = networks_of(files, self.sequences)
+
+    @property
+    def target_path(self) -> Path:
+        """Of sequences that have no target.toml of their own."""
+        return self.config.target or shipped_data("frigate") / "target.toml"
 
     @property
     def cache(self) -> Path:

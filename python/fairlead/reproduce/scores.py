@@ -60,6 +60,7 @@ def score(track: Track, flight: Flight) -> dict[str, float]:
         "translation_rms_m": _rms(e.translation_m),
         "rotation_all_deg": float(np.where(e.failed, FAILURE_ROTATION_DEG, e.rotation_deg).mean()),
         "translation_all_m": float(np.where(e.failed, limit_m, e.translation_m).mean()),
+        "translation_since_m": _since_first(np.where(e.failed, limit_m, e.translation_m), e.rotation_deg),
         "coverage": float(np.isfinite(e.rotation_deg).mean()),
         "failed": float(e.failed.mean()),
         "wrong": float((e.failed & np.isfinite(e.rotation_deg)).mean()),
@@ -141,6 +142,12 @@ def rms_over(rows: Sequence[dict[str, float]], name: str) -> float:
     """Root mean square over seeds of a number that is a root mean square already."""
     values = np.array([row[name] for row in rows])
     return float(np.sqrt((values[np.isfinite(values)] ** 2).mean())) if np.isfinite(values).any() else float("nan")
+
+
+def _since_first(values: np.ndarray, rotation_deg: np.ndarray) -> float:
+    """Mean from the first frame with a pose on; NaN where there is none."""
+    known = np.flatnonzero(np.isfinite(rotation_deg))
+    return float(values[known[0] :].mean()) if known.size else float("nan")
 
 
 def _mean(values: np.ndarray) -> float:

@@ -54,10 +54,10 @@ def failures(context: Context) -> Section:
             tables.append(Table(name=f"failures_{name}", title=f"Against {label}", columns=_COLUMNS, rows=rows))
             axes.append(Axis(label=label, levels=[scale * level for level in levels], rows=rows, methods=METHODS))
     caption = (
-        "Top: mean translation error, failed frames with their limit of 25 % of the range. Middle: share of failed "
-        "frames, without a pose or with a useless one. Bottom: root mean square error over what the covariance "
-        "states; 1 is true, above it is over-confident. Arc at 1 km, 60 views, model error 1 m; what is not varied: "
-        "1 px, 90 deg, no outliers."
+        "Top: mean translation error, failed frames with their limit of 25 % of the range; dotted: the window from "
+        "its first pose on. Middle: share of failed frames, without a pose or with a useless one. Bottom: root mean "
+        "square error over what the covariance states; 1 is true, above it is over-confident. Arc at 1 km, 60 views, "
+        "model error 1 m; what is not varied: 1 px, 90 deg, no outliers."
     )
     return Section(
         name="failures",

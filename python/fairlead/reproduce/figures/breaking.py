@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from fairlead.evaluate.figures.style import INK, WIDTH_INCHES, styled
 from fairlead.reproduce.figures.look import LOOKS, legend
+from fairlead.reproduce.methods import WINDOW
 from fairlead.study.figures.look import log_values
 
 Row = Mapping[str, object]
@@ -56,4 +57,7 @@ def _draw(axes: Axes, column: Axis, key: str, scale: float) -> None:
         values = [scale * float(row[key]) for row in rows]  # type: ignore[arg-type]
         look = LOOKS[method]
         axes.plot(place, values, color=look.colour, lw=look.width, marker="o", ms=3.0)
+        if key == "translation_all_m" and method == WINDOW:
+            since = [float(row["translation_since_m"]) for row in rows]  # type: ignore[arg-type]
+            axes.plot(place, since, color=look.colour, lw=look.width, ls=(0, (1, 1.5)))
     axes.set_xticks(place, [f"{level:g}" for level in column.levels])
