@@ -30,7 +30,7 @@ class InputConfig:
     output: Annotated[Path, arg(aliases=["-o"])]
     """Folder for the results; files of an earlier run in it are replaced."""
     detector: str | None = None
-    """What finds the landmarks in images, e.g. aruco:DICT_4X4_100 or apriltag:36h11."""
+    """What finds the landmarks in images, e.g. network.onnx, frigate (shipped), aruco:DICT_4X4_100, apriltag:36h11."""
     truth: Path | None = None
     """truth.csv; the run is then evaluated as well."""
     options: Path | None = None

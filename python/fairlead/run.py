@@ -5,9 +5,10 @@
 import itertools
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
 from fairlead.io.attitudes import read_attitudes
@@ -25,12 +26,15 @@ from fairlead.sinks.run_folder import WRITTEN, RunFolder
 from fairlead.sources.bop import BopSource
 from fairlead.sources.image_folder import ImageFolderSource
 from fairlead.sources.readings import SensorReadings
-from fairlead.sources.source import ImageFrame, ImageSource, ViewSource
+from fairlead.sources.source import ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
 from fairlead.tracker import Refinement, Tracker, TrackerOptions
 from fairlead.tracker import refine as refine_batch
-from fairlead.types import Camera, PoseEstimator, Target, View
+from fairlead.types import Camera, Estimate, PoseEstimator, Target, View
+
+if TYPE_CHECKING:
+    from fairlead.detect import Detector
 
 MIN_LANDMARKS = 4
 """Fewer do not determine a pose."""
@@ -76,6 +80,8 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
                     readings.tell(estimator, view)
                 estimate = estimator.update(view)
                 update_ms = 1e3 * (time.perf_counter() - start_s)
+                if isinstance(source, DetectedViews):
+                    source.follow(estimate)
                 folder.write_view(view)
                 folder.write(estimate, _timing(view, detect_ms, update_ms))
                 advance(source.work(view))
@@ -138,14 +144,18 @@ def evaluate(config: EvaluateConfig) -> Path:
 
 
 class DetectedViews:
-    """The views that a detector finds in a sequence of images."""
+    """The views that a detector finds in a sequence of images; each is looked at when it is asked for."""
 
-    def __init__(self, images: ImageSource, detect: Callable[[ImageFrame], View]) -> None:
+    def __init__(self, images: ImageSource, detector: "Detector") -> None:
         self._images = images
-        self._detect = detect
+        self._detector = detector
 
     def __iter__(self) -> Iterator[View]:
-        return map(self._detect, self._images)
+        return (self._detector.detect(each.image, each.frame, each.stamp_ns) for each in self._images)
+
+    def follow(self, estimate: Estimate) -> None:
+        """Tell the detector where the estimator sees the target, before the next image is looked at."""
+        self._detector.follow(estimate)
 
     def count(self) -> int:
         """Number of images."""
@@ -171,12 +181,14 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
     from fairlead.detect import detector_from_spec
 
     try:
-        detector = detector_from_spec(config.detector, target)
+        detector = detector_from_spec(config.detector, target, camera)
+    except InputError:
+        raise
     except ValueError as error:
         raise UsageError(f"--detector: {str(error).removeprefix('detector: ')}") from error
     source = BopSource if is_bop(path) else ImageFolderSource
     images = source(path, camera, fps=config.fps)
-    return DetectedViews(images, lambda each: detector.detect(each.image, each.frame, each.stamp_ns))
+    return DetectedViews(images, detector)
 
 
 def sensor_readings(config: TrackConfig, target: Target) -> SensorReadings:
@@ -260,6 +272,8 @@ def _input_paths(config: InputConfig) -> dict[str, Path]:
     """Every file that was named, by its role."""
     paths = {"source": config.source, "target": config.target, "camera": config.camera}
     more = {"options": config.options, "truth": config.truth}
+    if config.detector is not None and config.detector.endswith(".onnx"):
+        more["detector"] = Path(config.detector)
     if isinstance(config, TrackConfig):
         more |= {"range": config.range, "attitude": config.attitude}
     return paths | {role: path for role, path in more.items() if path is not None}
