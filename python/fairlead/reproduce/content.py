@@ -37,6 +37,7 @@ class Table:
     name: str
     title: str
     columns: Sequence[Column]
+    """None of them: the table is written as CSV and not shown."""
     rows: Sequence[Row]
     note: str = ""
     """Below the table."""

@@ -31,10 +31,14 @@ Answer = tuple[Sequence[Estimate], Target, float]
 
 @dataclass(frozen=True, kw_only=True)
 class PenErrors:
-    """Root mean square reprojection errors [px], every photograph solved alone on the model."""
+    """Root mean square reprojection errors [px]."""
 
+    joint_px: float
+    """With the poses of the method, on its last model."""
     all_px: float
+    """Every photograph solved alone on that model."""
     unseen_px: float
+    """The odd photographs alone on a model that has seen the even ones."""
     side_mm: float
     """Mean side of the tags of the model."""
 
@@ -61,8 +65,10 @@ def pen(folder: Path) -> dict[str, PenErrors]:
     views = list(read_views(folder / "observations.csv"))
     found: dict[str, PenErrors] = {}
     for method, solve in _SOLVE.items():
-        model, half = (solve(some, target, camera)[1] for some in (views, views[::2]))
+        estimates, model, _ = solve(views, target, camera)
+        half = solve(views[::2], target, camera)[1]
         found[method] = PenErrors(
+            joint_px=_joint_px(views, estimates, camera, model),
             all_px=alone_px(views, camera, model),
             unseen_px=alone_px(views[1::2], camera, half),
             side_mm=tag_side(model).mean_mm,
@@ -117,6 +123,18 @@ def alone_px(views: Sequence[View], camera: Camera, model: Target) -> float:
             return float("nan")
         X = model.positions[index(view.landmarks)]
         squares.append(((project(camera, transform(found.T_camera_target, X)) - view.pixels) ** 2).sum(axis=1))
+    return float(np.sqrt(np.concatenate(squares).mean()))
+
+
+def _joint_px(views: Sequence[View], estimates: Sequence[Estimate], camera: Camera, model: Target) -> float:
+    """With the poses that there are; NaN if one is missing."""
+    index = LandmarkIndex(model.landmarks)
+    squares = [
+        ((project(camera, transform(e.T_camera_target, model.positions[index(v.landmarks)])) - v.pixels) ** 2).sum(
+            axis=1
+        )
+        for v, e in zip(views, estimates, strict=True)
+    ]
     return float(np.sqrt(np.concatenate(squares).mean()))
 
 

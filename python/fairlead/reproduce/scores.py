@@ -101,7 +101,7 @@ def on_common_frames(mine: Track, theirs: Track, flight: Flight) -> tuple[dict[s
 
 def summarise(rows: Sequence[dict[str, float]]) -> dict[str, float]:
     """Mean over seeds of every number, with the 95 % interval of the mean."""
-    found: dict[str, float] = {"seeds": len(rows)}
+    found: dict[str, float] = {"seeds": float(len(rows))}
     for name in rows[0]:
         statistic = describe(np.array([row[name] for row in rows]))
         found[name] = statistic.mean

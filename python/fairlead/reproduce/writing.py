@@ -50,7 +50,7 @@ def write_section(folder: Path, section: Section, made: Made) -> None:
         "version": made.version,
         "machine": made.machine,
         "quick": made.quick,
-        "tables": [_table_record(table) for table in section.tables],
+        "tables": [_table_record(table) for table in section.tables if table.columns],
         "pictures": pictures,
     }
     write_json(folder / SECTIONS / f"{section.name}.json", record)

@@ -107,7 +107,20 @@ def _tables(name: str, axis: str, lines: Rows[Line], settings: Rows[Setting], x:
             row["map_pose_nees"] = found[setting.name, "map"].statistics["pose_nees"].mean
             rows.append(row)
         tables.append(Table(name=f"{name}_{short}", title=f"{title}: mean error", columns=columns, rows=rows))
-    return tables
+    return [*tables, _flat(name, lines, settings)]
+
+
+def _flat(name: str, lines: Rows[Line], settings: Rows[Setting]) -> Table:
+    """A row per setting and method; written, not shown."""
+    names = {setting.name for setting in settings}
+    rows: list[dict[str, Cell]] = []
+    for line in lines:
+        if line.setting.name in names:
+            row: dict[str, Cell] = {"setting": line.setting.name, "method": line.method}
+            row |= {column: statistic.mean for column, statistic in line.statistics.items()}
+            row |= {f"{column}_over_bound": ratio for column, ratio in line.bound_ratio.items()}
+            rows.append(row)
+    return Table(name=name, title="", columns=(), rows=rows)
 
 
 _RMS = {"rotation_deg": "rotation_rms_deg", "translation_m": "translation_rms_m", "landmark_m": "landmark_rms_m"}
