@@ -3,7 +3,7 @@
 """How wrong a network is on a sequence, and how true its covariance: docs/reproduce.md section 4."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import chi2
@@ -11,6 +11,7 @@ from scipy.stats import chi2
 from fairlead.reproduce.sequences import Sequence
 from fairlead.types import View
 
+PAIRED_NS = 1_000_000
 _MEDIAN = float(chi2.ppf(0.5, 2))
 _OUTLIER = float(chi2.ppf(0.999, 2))
 
@@ -60,12 +61,10 @@ class Measured:
 def observe(sequence: Sequence, views: Iterable[View]) -> Observed:
     """Put views and truth side by side; frames without truth are left out, frames without a view stay empty."""
     k, n = len(sequence.truth), len(sequence.true.landmarks)
-    row = {frame: i for i, frame in enumerate(sequence.frames)}
     column = {name: j for j, name in enumerate(sequence.true.landmarks)}
     pixels, covariances = np.full((k, n, 2), np.nan), np.full((k, n, 2, 2), np.nan)
-    for view in views:
-        i = row.get(view.frame)
-        if i is None or not view.landmarks:
+    for i, view in enumerate(in_order(sequence, views)):
+        if not view.landmarks:
             continue
         at = [column[name] for name in view.landmarks]
         pixels[i, at], covariances[i, at] = view.pixels, view.covariances
@@ -77,6 +76,24 @@ def observe(sequence: Sequence, views: Iterable[View]) -> Observed:
         errors=pixels - true,
         visible=np.array([sequence.seen[frame].visible for frame in sequence.frames]),
     )
+
+
+def in_order(sequence: Sequence, views: Iterable[View]) -> list[View]:
+    """One view per frame with truth, paired by their stamps to a millisecond; an empty one where there is none.
+
+    Numbers of frames are not compared: a clip numbers its own.
+    """
+    views = sorted(views, key=lambda view: view.stamp_ns)
+    stamps = np.array([view.stamp_ns for view in views], dtype=np.int64)
+    found: list[View] = []
+    for pose in sequence.truth:
+        near = int(np.searchsorted(stamps, pose.stamp_ns - PAIRED_NS))
+        if near < len(views) and abs(views[near].stamp_ns - pose.stamp_ns) <= PAIRED_NS:
+            found.append(replace(views[near], frame=pose.frame, stamp_ns=pose.stamp_ns))
+        else:
+            nothing = {"landmarks": (), "pixels": np.empty((0, 2)), "covariances": np.empty((0, 2, 2))}
+            found.append(View(frame=pose.frame, stamp_ns=pose.stamp_ns, **nothing))
+    return found
 
 
 def measure(observed: Observed) -> Measured | None:

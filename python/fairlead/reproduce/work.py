@@ -14,7 +14,7 @@ import numpy as np
 
 from fairlead import _core
 from fairlead.reproduce.detections import Detections
-from fairlead.reproduce.measured import Observed
+from fairlead.reproduce.measured import Observed, in_order
 from fairlead.reproduce.methods import METHODS, Flight, Track, solve
 from fairlead.reproduce.sequences import Sequence
 from fairlead.tracker import TrackerOptions
@@ -38,10 +38,9 @@ def flight_of(
     sequence: Sequence, views: Names[View], observed: Observed, seed: int, ranges: tuple[RangeReading, ...] = ()
 ) -> Flight:
     """The views of the frames with truth, and a told model."""
-    by_frame = {view.frame: view for view in views}
     return Flight(
         camera=sequence.camera,
-        views=tuple(by_frame.get(pose.frame) or _empty(pose.frame, pose.stamp_ns) for pose in sequence.truth),
+        views=tuple(in_order(sequence, views)),
         observed=observed,
         told=sequence.told(seed),
         X_true=sequence.true.positions,
@@ -54,10 +53,6 @@ def job_of(sequence: Sequence, detections: Detections, observed: Observed, seed:
     """All methods on one seed."""
     flight = flight_of(sequence, detections.views, observed, seed)
     return Job(flight=flight, name=f"{sequence.name}/{detections.network.name}/{seed:03d}")
-
-
-def _empty(frame: int, stamp_ns: int) -> View:
-    return View(frame=frame, stamp_ns=stamp_ns, landmarks=(), pixels=np.empty((0, 2)), covariances=np.empty((0, 2, 2)))
 
 
 def run_job(job: Job, folder: Path) -> dict[str, Track]:

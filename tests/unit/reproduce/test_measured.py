@@ -66,6 +66,7 @@ def test_views_are_put_beside_the_truth(sequence):
     from fairlead.io.observations import read_views
 
     views = list(read_views(sequence.folder / "detections" / "heat-t.csv"))
+    views = [replace(view, frame=k, stamp_ns=view.stamp_ns + 400_000) for k, view in enumerate(views)]
     observed = observe(sequence, views[1:])
     assert np.isnan(observed.errors[0]).all()
     assert np.abs(observed.errors[1:]).max() < 5.0 * 0.7

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures 7 and 8: noise and rendezvous angle, by `fairlead study`."""
 
+import fnmatch
 from collections.abc import Sequence as Rows
 
 from fairlead.config import StudyConfig, StudyKind
@@ -19,6 +20,8 @@ from fairlead.study.summary import Line, crossing, summarise
 
 ANGLE_SHARE = 5
 """The sweep of angles has so many times fewer runs a setting: its flights have up to 181 views."""
+_OUTLIERS = "s1-a90-m1-o*"
+"""Settings of the grid."""
 _SHOWN = ("epnp", "single", "window", "window-5", "map", "online", "true-model", "bound")
 _LABELS = {method.name: method.label for method in METHODS}
 _ERRORS = (
@@ -32,6 +35,8 @@ def noise(context: Context) -> Section:
     """Figure 7."""
     lines = _lines(context, "noise", context.study_runs)
     settings = settings_of("noise")
+    wild = [setting for setting in settings_of("grid") if fnmatch.fnmatchcase(setting.name, _OUTLIERS)]
+    wild_lines = _lines(context, "grid", max(context.study_runs // ANGLE_SHARE, 1), _OUTLIERS)
     x = [setting.sigma_px for setting in settings]
     title = f"90 deg arc at 1 km, {VIEWS} views, model error 1 m, {context.study_runs} runs a setting"
     places = {name: _last_gain(lines, settings, x, name) for name in ("window-5", "window", "map")}
@@ -46,7 +51,12 @@ def noise(context: Context) -> Section:
         title="Figure 7: noise",
         published=published.FIGURE_7,
         words=[words],
-        tables=_tables("figure7", "noise [px]", lines, settings, x),
+        tables=[
+            *_tables("figure7", "noise [px]", lines, settings, x),
+            *_tables(
+                "figure7_outliers", "share of outliers of 30 px", wild_lines, wild, [s.outlier_fraction for s in wild]
+            ),
+        ],
         pictures=_pictures("figure7", lines, settings, x, "noise [px]", title),
         facts={"runs a setting": str(context.study_runs)},
     )
@@ -77,10 +87,10 @@ def angle(context: Context) -> Section:
     )
 
 
-def _lines(context: Context, kind: StudyKind, runs: int) -> list[Line]:
+def _lines(context: Context, kind: StudyKind, runs: int, only: str = "*") -> list[Line]:
     """Do what is missing; the folder belongs to this estimator alone."""
     folder = context.cache / "studies" / f"{kind}-{core_digest()[:12]}"
-    run_study(StudyConfig(study=kind, output=folder, runs=runs), context.progress)
+    run_study(StudyConfig(study=kind, output=folder, runs=runs, only=only), context.progress)
     names = tuple(method.name for method in METHODS)
     return summarise(settings_of(kind), names, results_of(read_rows(folder), COLUMNS))
 
