@@ -16,7 +16,7 @@ from fairlead.study.figures.look import log_values
 @styled
 def draw_camera_errors(errors: Mapping[str, TempleErrors]) -> Figure:
     """A line per method."""
-    figure = new_figure(2.6)
+    figure = new_figure(2.9)
     axes = figure.subplots()
     count = max(len(each.positions_percent) for each in errors.values())
     place = np.arange(1, count + 1)
@@ -25,7 +25,7 @@ def draw_camera_errors(errors: Mapping[str, TempleErrors]) -> Figure:
         axes.plot(place, each.positions_percent, color=look.colour, lw=look.width, marker="o", ms=3.4)
     log_values(axes)
     axes.set_xlabel("photograph")
-    axes.set_ylabel("camera position error [% of range]")
+    axes.set_ylabel("camera position [% of range]")
     axes.set_xticks(place)
     legend(figure, tuple(errors))
     return figure
