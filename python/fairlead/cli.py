@@ -22,6 +22,7 @@ from fairlead.config import (
     EvaluateConfig,
     RefineConfig,
     RenderConfig,
+    ReproduceConfig,
     SimulateConfig,
     StudyConfig,
     TrackConfig,
@@ -43,6 +44,7 @@ _Command = (
     | Annotated[SimulateConfig, subcommand("simulate")]
     | Annotated[RenderConfig, subcommand("render")]
     | Annotated[StudyConfig, subcommand("study")]
+    | Annotated[ReproduceConfig, subcommand("reproduce")]
 )
 
 
@@ -101,6 +103,8 @@ def _run(config: Config) -> int:
         return _render(config)
     if isinstance(config, StudyConfig):
         return _study(config)
+    if isinstance(config, ReproduceConfig):
+        return _reproduce(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -160,6 +164,17 @@ def _study(config: StudyConfig) -> int:
     sys.stdout.write(f"{summary.output}: {counts}\n")
     for file in summary.files:
         sys.stdout.write(f"{file}\n")
+    return 0
+
+
+def _reproduce(config: ReproduceConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.reproduce import reproduce
+
+    summary = reproduce(config, progress_bar)
+    for line in summary.missing:
+        sys.stdout.write(f"not here: {line}\n")
+    sys.stdout.write(f"made: {', '.join(summary.made)}\n{summary.html}\n")
     return 0
 
 

@@ -257,4 +257,46 @@ class StudyConfig:
             raise UsageError("--backend dask and --scheduler ADDRESS go together")
 
 
-Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | RenderConfig | StudyConfig | DemoConfig
+@dataclass(frozen=True, kw_only=True)
+class ReproduceConfig:
+    """Every table and figure of the published experiments, theirs beside ours. Goes on where it stopped."""
+
+    output: Annotated[Path, arg(aliases=["-o"])]
+    """Folder for the report, tables and figures; sections that are in it stay until they are made again."""
+    quick: bool = False
+    """3 told models a sequence instead of 20, 50 simulated runs a setting instead of 1000."""
+    only: tuple[str, ...] = ()
+    """Only these sections, e.g. landmarks poses model times studies failures real."""
+    sequences: tuple[Path, ...] = ()
+    """Folders of sequences with truth.csv, or such sequences; the clips that come along if not given."""
+    networks: tuple[Path, ...] = ()
+    """ONNX detectors; those that come along if not given."""
+    real: Path | None = None
+    """Folder with the recordings marker_pen and temple_ring."""
+    weather: Path | None = None
+    """Folder with one sequence per weather, named KIND-STRENGTH, e.g. fog-0.5."""
+    seeds: int | None = None
+    """Told models a sequence."""
+    study_runs: int | None = None
+    """Simulated runs a setting."""
+    target: Path | None = None
+    """target.toml of sequences that have none of their own; the frigate's if not given."""
+    cache: Path | None = None
+    """Folder for detections and runs, which can be made again; cache in the output if not given."""
+
+    def __post_init__(self) -> None:
+        for name, value in (("seeds", self.seeds), ("study-runs", self.study_runs)):
+            if value is not None and value < 1:
+                raise UsageError(f"--{name}: expected a whole number >= 1, got {value}")
+
+
+Config = (
+    ReproduceConfig
+    | TrackConfig
+    | RefineConfig
+    | EvaluateConfig
+    | SimulateConfig
+    | RenderConfig
+    | StudyConfig
+    | DemoConfig
+)
