@@ -126,8 +126,10 @@ class EvaluateConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class DemoConfig:
-    """Real photographs of a pen with eight tags whose drawing is wrong: poses, refined model, report."""
+    """What the program does, on recordings that come along: poses, refined model, report."""
 
+    recording: Positional[Literal["ship", "pen"]] = "ship"
+    """ship: a rendered clip through the shipped network, with truth. pen: tags in real photographs, a wrong drawing."""
     output: Annotated[Path, arg(aliases=["-o"])] = Path("fairlead_demo")
     """Folder for the results."""
 
