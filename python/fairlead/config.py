@@ -7,11 +7,31 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
+from tyro.constructors import PrimitiveConstructorSpec
+
+from fairlead.types import Autopilot
 
 Method = Literal["map", "window", "epnp"]
 StudyKind = Literal["noise", "angle", "grid"]
 Backend = Literal["threads", "dask"]
-Network = Literal["heat-t", "heat-s", "heat-m", "rtmpose-t", "rtmpose-s", "rtmpose-m", "tinypose"]
+
+
+def parse_source(text: str) -> Path | str:
+    """A path, or the name of something live as it is."""
+    return text if "://" in text or text.startswith("camera:") else Path(text)
+
+
+Source = Annotated[
+    Path | str,
+    PrimitiveConstructorSpec(
+        nargs=1,
+        metavar="SOURCE",
+        instance_from_str=lambda words: parse_source(words[0]),
+        is_instance=lambda value: isinstance(value, Path | str),
+        str_from_instance=lambda value: [str(value)],
+    ),
+]
+"""A path, or text for what is live: `camera:0`, `rtsp://...`."""
 
 
 class UsageError(ValueError):
@@ -22,14 +42,15 @@ class UsageError(ValueError):
 class InputConfig:
     """What track and refine are told alike."""
 
-    source: Positional[Path]
-    """observations.csv, observations.parquet, or a folder of images (then --detector too)."""
+    source: Positional[Source]
+    """observations.csv or .parquet; or, with --detector, images: a folder, a BOP scene, a video, a bag or .mcap,
+    camera:0, rtsp://..."""
     target: Path
     """target.toml: landmarks, and how well they are known."""
-    camera: Path
-    """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt."""
     output: Annotated[Path, arg(aliases=["-o"])]
     """Folder for the results; files of an earlier run in it are replaced."""
+    camera: Path | None = None
+    """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt. A bag may bring its own."""
     detector: str | None = None
     """What finds the landmarks in images, e.g. network.onnx, frigate (shipped), aruco:DICT_4X4_100, apriltag:36h11."""
     truth: Path | None = None
@@ -37,7 +58,9 @@ class InputConfig:
     options: Path | None = None
     """TOML file of estimator options."""
     fps: float | None = None
-    """Frames per second of an image folder without stamps [1/s]."""
+    """Frames per second of images without stamps [1/s]."""
+    topic: str | None = None
+    """Which images of a bag that holds several."""
     camera_name: str | None = None
     """Which camera of a file that holds several."""
     min_coverage: float = 0.5
@@ -52,7 +75,7 @@ class InputConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class TrackConfig(InputConfig):
-    """Track a target through a table of observations or a folder of images, frame by frame."""
+    """Track a target through images or a table of observations, frame by frame."""
 
     method: Method = "map"
     """map: this project's estimator. window: the published one. epnp: each frame alone."""
@@ -60,6 +83,26 @@ class TrackConfig(InputConfig):
     """range.csv: readings of a range finder (method map)."""
     attitude: Path | None = None
     """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
+    overlay: Path | None = None
+    """Video (.mkv) of the images with silhouette, landmarks and their uncertainty drawn over them."""
+
+    mcap: Path | None = None
+    """ROS 2 messages of every frame: /fairlead/pose, /tf, /diagnostics."""
+    mavlink: str | None = None
+    """Autopilot to tell: udpout:127.0.0.1:14550, udpin:HOST:PORT, tcp:HOST:PORT, /dev/ttyACM0:921600; then --autopilot
+    and --mount too."""
+    autopilot: Autopilot | None = None
+    """Which rules it follows."""
+    mount: Path | None = None
+    """mount.toml: where the camera sits on the vehicle."""
+    mavlink_key: Path | None = None
+    """File with the secret that messages are signed with: 32 bytes or 64 hexadecimal digits."""
+    mavlink_systems: tuple[int, ...] = (1,)
+    """System ids that are listened to; the first one is the vehicle."""
+    mavlink_rate: float = 20.0
+    """Estimates sent at most [1/s]."""
+    parquet: bool = False
+    """Write poses.parquet at the end, too."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,8 +126,10 @@ class EvaluateConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class DemoConfig:
-    """Real photographs of a pen with eight tags whose drawing is wrong: poses, refined model, report."""
+    """What the program does, on recordings that come along: poses, refined model, report."""
 
+    recording: Positional[Literal["ship", "pen"]] = "ship"
+    """ship: a rendered clip through the shipped network, with truth. pen: tags in real photographs, a wrong drawing."""
     output: Annotated[Path, arg(aliases=["-o"])] = Path("fairlead_demo")
     """Folder for the results."""
 
@@ -139,12 +184,18 @@ class RenderConfig:
     """Let the target heave, roll and pitch."""
     stride: int = 5
     """Every how many frames of the 25 Hz camera one is rendered."""
+    first: int = 0
+    """Number of the frame of that camera to begin with."""
     frames: int | None = None
     """Only so many, from the first on."""
     depth: bool = False
     """Write depth images, too."""
     reuse: Path | None = None
     """Folder of the same sequence at full quality: its light is developed anew, with other weather."""
+    clip: Path | None = None
+    """Folder for the sequence as a video with its truth."""
+    crf: float = 26.0
+    """Constant rate factor of that video: less is better and larger."""
     count: int = 1000
     """How many crops."""
     empty: float = 0.0
@@ -155,15 +206,20 @@ class RenderConfig:
     """Of everything that is drawn by chance."""
     jobs: int = 1
     """Processes."""
+    threads: int | None = None
+    """Of each process at full quality; as many as there are cores if not given."""
 
     def __post_init__(self) -> None:
         if not (
             0.0 <= self.strength <= 1.0 and 1.0 <= self.wind_m_s <= 30.0 and -1.0 <= self.sun_elevation_deg <= 89.0
         ):
             raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
-        least = min(self.samples, self.stride, self.count, self.jobs, 1 if self.frames is None else self.frames)
-        if least < 1 or not 32 <= self.size <= 2048 or self.seed < 0 or not 0.0 <= self.empty <= 1.0:
-            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed >= 0, --empty 0 to 1")
+        counts = (self.samples, self.stride, self.count, self.jobs, self.frames, self.threads)
+        least = min(count for count in counts if count is not None)
+        if not (0.0 <= self.crf <= 51.0 and 0.0 <= self.empty <= 1.0):
+            raise UsageError(f"render: expected --crf 0 to 51, got {self.crf}, --empty 0 to 1, got {self.empty}")
+        if least < 1 or not 32 <= self.size <= 2048 or min(self.seed, self.first) < 0:
+            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed, --first not below 0")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -206,87 +262,45 @@ class StudyConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrainConfig:
-    """Train a landmark network on labelled crops. Goes on where it stopped."""
+class ReproduceConfig:
+    """Every table and figure of the published experiments, theirs beside ours. Goes on where it stopped."""
 
-    data: tuple[Path, ...]
-    """Folders of crops with annotations.json, as `fairlead render crops` writes them."""
     output: Annotated[Path, arg(aliases=["-o"])]
-    """Folder for checkpoints and curves; a course that was stopped in it is taken up again."""
+    """Folder for the report, tables and figures; sections that are in it stay until they are made again."""
+    quick: bool = False
+    """3 told models a sequence instead of 20, 50 simulated runs a setting instead of 1000."""
+    only: tuple[str, ...] = ()
+    """Only these sections, e.g. landmarks poses model times studies failures real."""
+    sequences: tuple[Path, ...] = ()
+    """Folders of sequences with truth.csv, or such sequences; the clips that come along if not given."""
+    networks: tuple[Path, ...] = ()
+    """ONNX detectors; those that come along if not given."""
+    real: Path | None = None
+    """Folder with the recordings marker_pen and temple_ring."""
+    weather: Path | None = None
+    """Folder with one sequence per weather, named KIND-STRENGTH, e.g. fog-0.5."""
+    seeds: int | None = None
+    """Told models a sequence."""
+    study_runs: int | None = None
+    """Simulated runs a setting."""
     target: Path | None = None
-    """target.toml whose landmarks the crops must be labelled with."""
-    network: Network = "heat-t"
-    """heat: the default. rtmpose: as published, best begun with --start from a trained heat. tinypose: smallest."""
-    start: Path | None = None
-    """Checkpoint to begin from: weights of the same name and shape are taken over."""
-    valid: tuple[Path, ...] = ()
-    """Folders of held-out crops; the last twentieth of the data if not given."""
-    crops: int = 100_000
-    """Crops that the network sees in all, each changed anew; more is better, and costs time in proportion."""
-    batch: int = 32
-    """Crops of one step."""
-    rate: float = 1e-3
-    """Learning rate; too large diverges, too small wastes crops [-]."""
-    size: int = 256
-    """Side of the crops [px], a multiple of 128."""
-    threads: int | None = None
-    """Of the processor; all that it has if not given."""
-    workers: int = 1
-    """Processes that read crops."""
-    precision: Literal["auto", "32", "bf16", "16"] = "auto"
-    """Of the arithmetic: auto is 16 on a GPU and 32 without; bf16 is faster on some processors."""
-    seed: int = 0
-    """Of everything that is drawn by chance."""
+    """target.toml of sequences that have none of their own; the frigate's if not given."""
+    cache: Path | None = None
+    """Folder for detections and runs, which can be made again; cache in the output if not given."""
 
     def __post_init__(self) -> None:
-        if min(self.crops, self.batch, self.threads or 1) < 1 or min(self.workers, self.seed) < 0:
-            raise UsageError("train: expected whole numbers above 0, --workers and --seed not below 0")
-        if not 0.0 < self.rate < 1.0 or self.size % 128 or not 128 <= self.size <= 1024:
-            raise UsageError("train: expected --rate between 0 and 1, --size a multiple of 128 from 128 to 1024")
-        if not self.data:
-            raise UsageError("train: --data names no folder")
+        for name, value in (("seeds", self.seeds), ("study-runs", self.study_runs)):
+            if value is not None and value < 1:
+                raise UsageError(f"--{name}: expected a whole number >= 1, got {value}")
 
 
-@dataclass(frozen=True, kw_only=True)
-class CalibrateConfig:
-    """Measure a trained network on held-out images: errors, and what its covariances are worth."""
-
-    checkpoint: Positional[Path]
-    """Written by train."""
-    data: tuple[Path, ...]
-    """Folders of crops, or of rendered sequences; none that was trained on. One condition each."""
-    output: Annotated[Path, arg(aliases=["-o"])]
-    """Folder for calibration.toml, tables and figures."""
-    target: Path | None = None
-    """target.toml, to whose middle ranges are measured; the frigate's if not given."""
-    camera: Path | None = None
-    """The flight's calibration, for errors in its pixels; camera.yaml beside the target if not given."""
-    seed: int = 0
-    """Of how windows are misplaced in the images of sequences."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class ExportConfig:
-    """Write a trained network as one .onnx file that says itself how to use it."""
-
-    checkpoint: Positional[Path]
-    """Written by train."""
-    output: Annotated[Path, arg(aliases=["-o"])]
-    """The .onnx file; its sha256 is written beside it."""
-    calibration: Path | None = None
-    """calibration.toml of `fairlead calibrate`; without it covariances are as the network says."""
-    target: str = ""
-    """Name of the target, for the card."""
-
-
-NetworkConfig = TrainConfig | CalibrateConfig | ExportConfig
 Config = (
-    TrackConfig
+    ReproduceConfig
+    | TrackConfig
     | RefineConfig
     | EvaluateConfig
     | SimulateConfig
     | RenderConfig
     | StudyConfig
     | DemoConfig
-    | NetworkConfig
 )

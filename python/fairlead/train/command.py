@@ -12,8 +12,8 @@ from fairlead.io.target import load_target
 from fairlead.progress import ProgressFactory, silent
 
 
-class MissingTraining(RuntimeError):
-    """What trains is not installed. One line."""
+class TrainingError(RuntimeError):
+    """Arguments that will not do, or what trains is not installed. One line."""
 
 
 def train(
@@ -34,7 +34,11 @@ def train(
     seed: int = 0,
     progress: ProgressFactory = silent,
 ) -> list[str]:
-    """Train; returns lines for people. Raises InputError, MissingTraining."""
+    """Train; returns lines for people. Raises InputError, TrainingError."""
+    if min(crops, batch, threads or 1) < 1 or min(workers, seed) < 0:
+        raise TrainingError("train: expected whole numbers above 0, --workers and --seed not below 0")
+    if not 0.0 < rate < 1.0 or size % 128 or not 128 <= size <= 1024:
+        raise TrainingError("train: expected --rate between 0 and 1, --size a multiple of 128 from 128 to 1024")
     _needs_torch()
     from fairlead.train.course import Course, follow
     from fairlead.train.crops import open_crops
@@ -59,7 +63,7 @@ def calibrate(
     seed: int = 0,
     progress: ProgressFactory = silent,
 ) -> list[str]:
-    """Measure on held-out images; returns lines for people. Raises InputError, MissingTraining."""
+    """Measure on held-out images; returns lines for people. Raises InputError, TrainingError."""
     _needs_torch()
     from fairlead.train.calibrate import calibrate_network
 
@@ -80,7 +84,7 @@ def export(
     target: str = "",
     progress: ProgressFactory = silent,
 ) -> list[str]:
-    """Write the .onnx file; returns lines for people. Raises InputError, MissingTraining."""
+    """Write the .onnx file; returns lines for people. Raises InputError, TrainingError."""
     del progress
     _needs_torch()
     from fairlead.train.export import export_network
@@ -95,4 +99,4 @@ def _needs_torch() -> None:
         import onnx  # noqa: F401
         import torch  # noqa: F401
     except ImportError as error:
-        raise MissingTraining(f"{error.name} is not installed: pip install 'fairlead[train]'") from error
+        raise TrainingError(f"{error.name} is not installed: pip install 'fairlead[train]'") from error

@@ -6,7 +6,6 @@ import csv
 import hashlib
 import shutil
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import onnxruntime
@@ -14,9 +13,7 @@ import pytest
 import torch
 
 from fairlead.cli import main
-from fairlead.config import TrainConfig, UsageError
-from fairlead.detect.onnx import session
-from fairlead.io.network_card import card_from_json
+from fairlead.detect.onnx import Network
 from fairlead.train import course as courses
 from fairlead.train.course import Course, load_lesson, read_checkpoint
 from fairlead.train.crops import normalise, open_crops
@@ -55,19 +52,31 @@ def exported(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_file_says_what_it_is(exported: Path) -> None:
-    """Card and sha256; the run time reads it."""
-    text = onnxruntime.InferenceSession(exported).get_modelmeta().custom_metadata_map["fairlead_card"]
-    card = card_from_json(text, exported)
-    assert (card.network, card.target, card.landmarks) == ("heat-t", "spots", NAMES)
-    assert (card.input.color, card.input.width, card.input.any_size) == ("BGR", 128, True)
     digest, name = (exported.parent / "spots.onnx.sha256").read_text().split()
     assert (digest, name) == (hashlib.sha256(exported.read_bytes()).hexdigest(), "spots.onnx")
-    assert session is not None
+    card = Network(exported).card
+    assert (card.network, card.target, card.landmarks) == ("heat-t", "spots", NAMES)
+    assert (card.input.color, card.input.width, card.input.height, card.input.any_size) == ("BGR", 128, 128, True)
+
+
+def test_the_run_time_sees_what_was_trained(trained: Path, exported: Path) -> None:
+    """From an 8 bit crop to pixels and covariances, normalisation and order of colours included; single precision."""
+    lesson, image = load_lesson(trained / "last.ckpt"), spotted(np.random.default_rng(7))[0]
+    with torch.inference_mode():
+        wanted = lesson(torch.from_numpy(image).permute(2, 0, 1)[None])
+    found = Network(exported).look(image)
+    assert np.abs(found.pixels - wanted.pixels[0].numpy()).max() < 0.001
+    l11, l22, l21 = (wanted.cholesky[0, :, k].double().numpy() for k in range(3))
+    xx, xy, yy = np.exp(2.0 * l11), np.exp(l11) * l21, l21**2 + np.exp(2.0 * l22)
+    assert np.allclose(found.covariances.reshape(-1, 4), np.column_stack([xx, xy, xy, yy]), rtol=1e-3)
+    assert np.allclose(found.scores, wanted.visible[0].numpy(), atol=1e-3)
 
 
 @pytest.mark.parametrize("name", ["heat-t", "rtmpose-t", "tinypose"])
 def test_torch_and_onnxruntime_say_the_same(name: str, trained: Path, spots: Path, tmp_path: Path) -> None:
-    """Two orders of summation: 1e-3 px. heat is trained, or which cell is highest would be a matter of luck."""
+    """Two orders of summation: 0.001 px. heat is trained, or which cell is highest would be luck; the maps of an
+    untrained tinypose are flat, and one Newton step divides by their curvature: 0.02 px.
+    """
     from fairlead.train.export import write_onnx
 
     torch.manual_seed(0)
@@ -78,11 +87,9 @@ def test_torch_and_onnxruntime_say_the_same(name: str, trained: Path, spots: Pat
     with torch.inference_mode():
         wanted = lesson(images)
     found = onnxruntime.InferenceSession(tmp_path / "network.onnx").run(None, {"image": normalise(images).numpy()})
-    for one, other, tolerance in zip(
-        found, (wanted.pixels, wanted.cholesky, wanted.visible), (1e-3, 1e-3, 1e-3), strict=True
-    ):
+    for one, other in zip(found, (wanted.pixels, wanted.cholesky, wanted.visible), strict=True):
         assert one.shape == tuple(other.shape)
-        assert np.abs(one - other.numpy()).max() < tolerance
+        assert np.abs(one - other.numpy()).max() < (0.02 if name == "tinypose" else 0.001)
 
 
 def test_weights_that_fit_are_taken_over(trained: Path, spots: Path, tmp_path: Path) -> None:
@@ -111,12 +118,6 @@ def test_small_crops_come_first() -> None:
     assert Course(network="rtmpose-t", output=Path(), crops=40_960).size_at(0) == 256
 
 
-@pytest.mark.parametrize("wrong", [{"size": 100}, {"crops": 0}, {"rate": 0.0}, {"data": ()}])
-def test_arguments_out_of_range_are_named(wrong: dict[str, Any], spots: Path) -> None:
-    with pytest.raises(UsageError, match="train: "):
-        TrainConfig(**{"data": (spots,), "output": Path("out")} | wrong)
-
-
 def test_the_rate_rises_stays_and_falls() -> None:
     shares = [share_of_rate(step, 1000) for step in (0, 25, 51, 500, 750, 999)]
     assert shares == pytest.approx([1 / 51, 26 / 51, 1.0, 1.0, 0.51, 0.02], abs=0.001)
@@ -127,6 +128,8 @@ def test_the_rate_rises_stays_and_falls() -> None:
     [
         (["train", "--data", "{spots}", "--target", "{frigate}", "-o", "{out}"], "expected the landmarks of"),
         (["train", "--data", "{out}", "-o", "{out}"], "annotations.json"),
+        (["train", "--data", "{spots}", "--size", "100", "-o", "{out}"], "--size a multiple of 128"),
+        (["train", "--data", "{spots}", "--crops", "0", "-o", "{out}"], "whole numbers above 0"),
         (["train", "--data", "{spots}", "--start", "{broken}", "-o", "{out}"], "expected a checkpoint"),
         (["export", "{broken}", "-o", "{out}/a.onnx"], "expected a checkpoint"),
         (["calibrate", "{broken}", "--data", "{spots}", "-o", "{out}"], "expected a checkpoint"),
