@@ -29,6 +29,7 @@ from fairlead.config import (
     UsageError,
 )
 from fairlead.io.errors import InputError, one_line
+from fairlead.train.config import CalibrateConfig, ExportConfig, NetworkConfig, TrainConfig
 
 if TYPE_CHECKING:
     from fairlead.study import Replay
@@ -43,6 +44,9 @@ _Command = (
     | Annotated[SimulateConfig, subcommand("simulate")]
     | Annotated[RenderConfig, subcommand("render")]
     | Annotated[StudyConfig, subcommand("study")]
+    | Annotated[TrainConfig, subcommand("train")]
+    | Annotated[CalibrateConfig, subcommand("calibrate")]
+    | Annotated[ExportConfig, subcommand("export")]
     | Annotated[ReproduceConfig, subcommand("reproduce")]
 )
 
@@ -60,7 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     before = {number: signal.signal(number, _stop) for number in (signal.SIGINT, signal.SIGTERM)}
     stopped = False
     try:
-        config: Config = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
+        config: Config | NetworkConfig = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
         return _run(config)
     except (InputError, UsageError) as error:
         return _complain(str(error), 2)
@@ -95,13 +99,15 @@ def _complain(message: str, status: int) -> int:
     return status
 
 
-def _run(config: Config) -> int:
+def _run(config: Config | NetworkConfig) -> int:
     if isinstance(config, SimulateConfig):
         return _simulate(config)
     if isinstance(config, RenderConfig):
         return _render(config)
     if isinstance(config, StudyConfig):
         return _study(config)
+    if isinstance(config, NetworkConfig):
+        return _network(config)
     if isinstance(config, ReproduceConfig):
         return _reproduce(config)
     from fairlead import run
@@ -148,6 +154,19 @@ def _render(config: RenderConfig) -> int:
     except RenderError as error:
         return _complain(str(error), 2)
     sys.stdout.write(f"{config.output}: {made} pictures made\n")
+    return 0
+
+
+def _network(config: NetworkConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.train.command import TrainingError, calibrate, export, train
+
+    verb = {TrainConfig: train, CalibrateConfig: calibrate, ExportConfig: export}[type(config)]
+    try:
+        lines = verb(**vars(config), progress=progress_bar)
+    except TrainingError as error:
+        return _complain(str(error), 2)
+    sys.stdout.write("".join(f"{line}\n" for line in lines))
     return 0
 
 

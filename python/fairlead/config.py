@@ -198,6 +198,8 @@ class RenderConfig:
     """Constant rate factor of that video: less is better and larger."""
     count: int = 1000
     """How many crops."""
+    empty: float = 0.0
+    """Share of the crops without the target, often with another ship in its place [-]."""
     size: int = 256
     """Side of a crop [px]."""
     seed: int = 0
@@ -214,8 +216,8 @@ class RenderConfig:
             raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
         counts = (self.samples, self.stride, self.count, self.jobs, self.frames, self.threads)
         least = min(count for count in counts if count is not None)
-        if not 0.0 <= self.crf <= 51.0:
-            raise UsageError(f"--crf: expected 0 to 51, got {self.crf}")
+        if not (0.0 <= self.crf <= 51.0 and 0.0 <= self.empty <= 1.0):
+            raise UsageError(f"render: expected --crf 0 to 51, got {self.crf}, --empty 0 to 1, got {self.empty}")
         if least < 1 or not 32 <= self.size <= 2048 or min(self.seed, self.first) < 0:
             raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed, --first not below 0")
 

@@ -17,6 +17,7 @@ from fairlead.opencv.drawing import (
     fill_triangles,
     resample,
 )
+from fairlead.opencv.filters import warp_affine
 from fairlead.opencv.images import GreyImage, Image, decode_image, grey, image_size, read_image
 from fairlead.opencv.markers import (
     FoundCorners,
@@ -61,4 +62,5 @@ __all__ = [
     "refine",
     "resample",
     "sqpnp",
+    "warp_affine",
 ]
