@@ -7,10 +7,31 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
+from tyro.constructors import PrimitiveConstructorSpec
+
+from fairlead.types import Autopilot
 
 Method = Literal["map", "window", "epnp"]
 StudyKind = Literal["noise", "angle", "grid"]
 Backend = Literal["threads", "dask"]
+
+
+def parse_source(text: str) -> Path | str:
+    """A path, or the name of something live as it is."""
+    return text if "://" in text or text.startswith("camera:") else Path(text)
+
+
+Source = Annotated[
+    Path | str,
+    PrimitiveConstructorSpec(
+        nargs=1,
+        metavar="SOURCE",
+        instance_from_str=lambda words: parse_source(words[0]),
+        is_instance=lambda value: isinstance(value, Path | str),
+        str_from_instance=lambda value: [str(value)],
+    ),
+]
+"""A path, or text for what is live: `camera:0`, `rtsp://...`."""
 
 
 class UsageError(ValueError):
@@ -21,22 +42,25 @@ class UsageError(ValueError):
 class InputConfig:
     """What track and refine are told alike."""
 
-    source: Positional[Path]
-    """observations.csv, observations.parquet, or a folder of images (then --detector too)."""
+    source: Positional[Source]
+    """observations.csv or .parquet; or, with --detector, images: a folder, a BOP scene, a video, a bag or .mcap,
+    camera:0, rtsp://..."""
     target: Path
     """target.toml: landmarks, and how well they are known."""
-    camera: Path
-    """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt."""
     output: Annotated[Path, arg(aliases=["-o"])]
     """Folder for the results; files of an earlier run in it are replaced."""
+    camera: Path | None = None
+    """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt. A bag may bring its own."""
     detector: str | None = None
-    """What finds the landmarks in images, e.g. aruco:DICT_4X4_100 or apriltag:36h11."""
+    """What finds the landmarks in images, e.g. network.onnx, frigate (shipped), aruco:DICT_4X4_100, apriltag:36h11."""
     truth: Path | None = None
     """truth.csv; the run is then evaluated as well."""
     options: Path | None = None
     """TOML file of estimator options."""
     fps: float | None = None
-    """Frames per second of an image folder without stamps [1/s]."""
+    """Frames per second of images without stamps [1/s]."""
+    topic: str | None = None
+    """Which images of a bag that holds several."""
     camera_name: str | None = None
     """Which camera of a file that holds several."""
     min_coverage: float = 0.5
@@ -51,7 +75,7 @@ class InputConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class TrackConfig(InputConfig):
-    """Track a target through a table of observations or a folder of images, frame by frame."""
+    """Track a target through images or a table of observations, frame by frame."""
 
     method: Method = "map"
     """map: this project's estimator. window: the published one. epnp: each frame alone."""
@@ -59,6 +83,26 @@ class TrackConfig(InputConfig):
     """range.csv: readings of a range finder (method map)."""
     attitude: Path | None = None
     """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
+    overlay: Path | None = None
+    """Video (.mkv) of the images with silhouette, landmarks and their uncertainty drawn over them."""
+
+    mcap: Path | None = None
+    """ROS 2 messages of every frame: /fairlead/pose, /tf, /diagnostics."""
+    mavlink: str | None = None
+    """Autopilot to tell: udpout:127.0.0.1:14550, udpin:HOST:PORT, tcp:HOST:PORT, /dev/ttyACM0:921600; then --autopilot
+    and --mount too."""
+    autopilot: Autopilot | None = None
+    """Which rules it follows."""
+    mount: Path | None = None
+    """mount.toml: where the camera sits on the vehicle."""
+    mavlink_key: Path | None = None
+    """File with the secret that messages are signed with: 32 bytes or 64 hexadecimal digits."""
+    mavlink_systems: tuple[int, ...] = (1,)
+    """System ids that are listened to; the first one is the vehicle."""
+    mavlink_rate: float = 20.0
+    """Estimates sent at most [1/s]."""
+    parquet: bool = False
+    """Write poses.parquet at the end, too."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,8 +126,10 @@ class EvaluateConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class DemoConfig:
-    """Real photographs of a pen with eight tags whose drawing is wrong: poses, refined model, report."""
+    """What the program does, on recordings that come along: poses, refined model, report."""
 
+    recording: Positional[Literal["ship", "pen"]] = "ship"
+    """ship: a rendered clip through the shipped network, with truth. pen: tags in real photographs, a wrong drawing."""
     output: Annotated[Path, arg(aliases=["-o"])] = Path("fairlead_demo")
     """Folder for the results."""
 
@@ -213,4 +259,46 @@ class StudyConfig:
             raise UsageError("--backend dask and --scheduler ADDRESS go together")
 
 
-Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | RenderConfig | StudyConfig | DemoConfig
+@dataclass(frozen=True, kw_only=True)
+class ReproduceConfig:
+    """Every table and figure of the published experiments, theirs beside ours. Goes on where it stopped."""
+
+    output: Annotated[Path, arg(aliases=["-o"])]
+    """Folder for the report, tables and figures; sections that are in it stay until they are made again."""
+    quick: bool = False
+    """3 told models a sequence instead of 20, 50 simulated runs a setting instead of 1000."""
+    only: tuple[str, ...] = ()
+    """Only these sections, e.g. landmarks poses model times studies failures real."""
+    sequences: tuple[Path, ...] = ()
+    """Folders of sequences with truth.csv, or such sequences; the clips that come along if not given."""
+    networks: tuple[Path, ...] = ()
+    """ONNX detectors; those that come along if not given."""
+    real: Path | None = None
+    """Folder with the recordings marker_pen and temple_ring."""
+    weather: Path | None = None
+    """Folder with one sequence per weather, named KIND-STRENGTH, e.g. fog-0.5."""
+    seeds: int | None = None
+    """Told models a sequence."""
+    study_runs: int | None = None
+    """Simulated runs a setting."""
+    target: Path | None = None
+    """target.toml of sequences that have none of their own; the frigate's if not given."""
+    cache: Path | None = None
+    """Folder for detections and runs, which can be made again; cache in the output if not given."""
+
+    def __post_init__(self) -> None:
+        for name, value in (("seeds", self.seeds), ("study-runs", self.study_runs)):
+            if value is not None and value < 1:
+                raise UsageError(f"--{name}: expected a whole number >= 1, got {value}")
+
+
+Config = (
+    ReproduceConfig
+    | TrackConfig
+    | RefineConfig
+    | EvaluateConfig
+    | SimulateConfig
+    | RenderConfig
+    | StudyConfig
+    | DemoConfig
+)
