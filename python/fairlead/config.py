@@ -194,7 +194,7 @@ class RenderConfig:
     """Folder of the same sequence at full quality: its light is developed anew, with other weather."""
     clip: Path | None = None
     """Folder for the sequence as a video with its truth."""
-    crf: float = 26.0
+    crf: float = 24.0
     """Constant rate factor of that video: less is better and larger."""
     count: int = 1000
     """How many crops."""
