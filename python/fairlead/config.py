@@ -86,6 +86,10 @@ class TrackConfig(InputConfig):
     overlay: Path | None = None
     """Video (.mkv) of the images with silhouette, landmarks and their uncertainty drawn over them."""
 
+    viewer: bool = False
+    """Show it while it runs (rerun)."""
+    rrd: Path | None = None
+    """File (.rrd) of what the viewer shows, to look at later with `rerun FILE`."""
     mcap: Path | None = None
     """ROS 2 messages of every frame: /fairlead/pose, /tf, /diagnostics."""
     mavlink: str | None = None

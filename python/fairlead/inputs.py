@@ -3,11 +3,14 @@
 """Where the views of a run come from: source and detector, and the camera that they belong to."""
 
 import itertools
+import logging
 import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 from fairlead.config import InputConfig, UsageError
 from fairlead.io.camera import load_camera
@@ -18,6 +21,8 @@ from fairlead.sources.source import Image, ImageFrame, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
 from fairlead.types import Camera, Target, View
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,11 +36,15 @@ class Seen:
 
 
 class DetectedViews:
-    """The views that a detector finds in a sequence of images."""
+    """The views that a detector finds in a sequence of images.
+
+    An image that is the one before it, bit by bit, is a camera that froze: nothing is seen in it.
+    """
 
     def __init__(self, images: ImageSource, detect: Callable[[ImageFrame], View]) -> None:
         self._images = images
         self._detect = detect
+        self._frozen = FrozenCamera()
 
     def __iter__(self) -> Iterator[View]:
         return (seen.view for seen in self.seen())
@@ -45,7 +54,7 @@ class DetectedViews:
         start_s = time.perf_counter()
         for image in self._images:
             read_s = time.perf_counter()
-            view = self._detect(image)
+            view = nothing_seen(image) if self._frozen.is_repeated(image) else self._detect(image)
             done_s = time.perf_counter()
             yield Seen(
                 view=view, image=image.image, read_ms=1e3 * (read_s - start_s), detect_ms=1e3 * (done_s - read_s)
@@ -70,6 +79,37 @@ class DetectedViews:
         """Let go of a camera or a stream."""
         if isinstance(self._images, LiveImages):
             self._images.close()
+
+
+class FrozenCamera:
+    """Tells images that repeat the one before: no sensor gives the same noise twice."""
+
+    def __init__(self) -> None:
+        self._last: Image | None = None
+        self._warned = False
+
+    def is_repeated(self, image: ImageFrame) -> bool:
+        """Whether this is the image before it; the first time there is a warning."""
+        last, self._last = self._last, image.image
+        if last is None or last.shape != image.image.shape or not (last[::37] == image.image[::37]).all():
+            return False
+        if not (last == image.image).all():
+            return False
+        if not self._warned:
+            self._warned = True
+            _log.warning("%s: frame %d repeats the one before it: the camera froze", image.path, image.frame)
+        return True
+
+
+def nothing_seen(image: ImageFrame) -> View:
+    """A view without observations."""
+    return View(
+        frame=image.frame,
+        stamp_ns=image.stamp_ns,
+        landmarks=(),
+        pixels=np.empty((0, 2)),
+        covariances=np.empty((0, 2, 2)),
+    )
 
 
 def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSource:

@@ -18,7 +18,8 @@ _ENCODERS: dict[Codec, tuple[str, str, dict[str, str]]] = {
     "h264": ("libx264", "yuv420p", {"crf": "18", "preset": "veryfast", "tune": "zerolatency"}),
     "ffv1": ("ffv1", "bgr0", {"level": "3", "g": "1"}),
 }
-_MUXER = {"flush_packets": "1", "cluster_time_limit": "200"}
+_MUXER = {"flush_packets": "1", "cluster_time_limit": "1"}
+"""A cluster an image: what is not in a finished cluster is lost when the process is killed."""
 
 
 class VideoWriter:
