@@ -22,6 +22,7 @@ from fairlead.config import (
     EvaluateConfig,
     RefineConfig,
     RenderConfig,
+    ReproduceConfig,
     SimulateConfig,
     StudyConfig,
     TrackConfig,
@@ -30,7 +31,6 @@ from fairlead.config import (
 from fairlead.io.errors import InputError, one_line
 
 if TYPE_CHECKING:
-    from fairlead.demo import DemoResult
     from fairlead.study import Replay
 
 _DESCRIPTION = "Monocular 6D pose of a rigid target whose 3D model is only roughly known."
@@ -43,6 +43,7 @@ _Command = (
     | Annotated[SimulateConfig, subcommand("simulate")]
     | Annotated[RenderConfig, subcommand("render")]
     | Annotated[StudyConfig, subcommand("study")]
+    | Annotated[ReproduceConfig, subcommand("reproduce")]
 )
 
 
@@ -101,13 +102,15 @@ def _run(config: Config) -> int:
         return _render(config)
     if isinstance(config, StudyConfig):
         return _study(config)
+    if isinstance(config, ReproduceConfig):
+        return _reproduce(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
     if isinstance(config, DemoConfig):
-        from fairlead.demo import demo
+        from fairlead.demo import show_demo
 
-        _show(demo(config))
+        show_demo(config, progress_bar)
         return 0
     if isinstance(config, EvaluateConfig):
         _show_metrics(run.evaluate(config))
@@ -163,6 +166,17 @@ def _study(config: StudyConfig) -> int:
     return 0
 
 
+def _reproduce(config: ReproduceConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.reproduce import reproduce
+
+    summary = reproduce(config, progress_bar)
+    for line in summary.missing:
+        sys.stdout.write(f"not here: {line}\n")
+    sys.stdout.write(f"made: {', '.join(summary.made)}\n{summary.html}\n")
+    return 0
+
+
 def _show_replay(config: StudyConfig, replayed: "Replay") -> None:
     """One run: a line per method, its errors view by view."""
     from rich.console import Console
@@ -178,26 +192,6 @@ def _show_replay(config: StudyConfig, replayed: "Replay") -> None:
         views = "" if one.method.name == "bound" else " ".join(f"{value:.0f}" for value in one.translation_m)
         table.add_row(one.method.name, *texts, views)
     Console().print(table)
-
-
-def _show(result: "DemoResult") -> None:
-    """The demo's table on stdout."""
-    from rich.console import Console
-    from rich.table import Table
-
-    drawn, refined = result.drawing_side, result.refined_side
-    table = Table(title=f"Pen with eight tags: {result.photographs} photographs, {result.corners} corners")
-    table.add_column("")
-    table.add_column("drawing", justify="right")
-    table.add_column("refined", justify="right", style="bold")
-    table.add_row(r"reprojection \[px rms]", f"{result.drawing_px:.2f}", f"{result.refined_px:.2f}")
-    unseen = "  on odd photographs, refined with the even"
-    table.add_row(unseen, f"{result.drawing_unseen_px:.2f}", f"{result.refined_unseen_px:.2f}")
-    refined_mm = f"{refined.mean_mm:.2f} ± {refined.sigma_mm:.2f}"
-    table.add_row(r"mean side of the tags \[mm]", f"{drawn.mean_mm:.2f} ± {drawn.sigma_mm:.2f}", refined_mm)
-    Console().print(table)
-    sys.stdout.write("Photographs do not tell the scale: it is that of the drawing as a whole.\n")
-    sys.stdout.write(f"{result.report} ({result.seconds:.1f} s)\n")
 
 
 def _show_metrics(report: Path) -> None:

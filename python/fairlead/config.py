@@ -52,7 +52,7 @@ class InputConfig:
     camera: Path | None = None
     """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt. A bag may bring its own."""
     detector: str | None = None
-    """What finds the landmarks in images, e.g. aruco:DICT_4X4_100 or apriltag:36h11."""
+    """What finds the landmarks in images, e.g. network.onnx, frigate (shipped), aruco:DICT_4X4_100, apriltag:36h11."""
     truth: Path | None = None
     """truth.csv; the run is then evaluated as well."""
     options: Path | None = None
@@ -130,8 +130,10 @@ class EvaluateConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class DemoConfig:
-    """Real photographs of a pen with eight tags whose drawing is wrong: poses, refined model, report."""
+    """What the program does, on recordings that come along: poses, refined model, report."""
 
+    recording: Positional[Literal["ship", "pen"]] = "ship"
+    """ship: a rendered clip through the shipped network, with truth. pen: tags in real photographs, a wrong drawing."""
     output: Annotated[Path, arg(aliases=["-o"])] = Path("fairlead_demo")
     """Folder for the results."""
 
@@ -186,12 +188,18 @@ class RenderConfig:
     """Let the target heave, roll and pitch."""
     stride: int = 5
     """Every how many frames of the 25 Hz camera one is rendered."""
+    first: int = 0
+    """Number of the frame of that camera to begin with."""
     frames: int | None = None
     """Only so many, from the first on."""
     depth: bool = False
     """Write depth images, too."""
     reuse: Path | None = None
     """Folder of the same sequence at full quality: its light is developed anew, with other weather."""
+    clip: Path | None = None
+    """Folder for the sequence as a video with its truth."""
+    crf: float = 26.0
+    """Constant rate factor of that video: less is better and larger."""
     count: int = 1000
     """How many crops."""
     size: int = 256
@@ -200,15 +208,20 @@ class RenderConfig:
     """Of everything that is drawn by chance."""
     jobs: int = 1
     """Processes."""
+    threads: int | None = None
+    """Of each process at full quality; as many as there are cores if not given."""
 
     def __post_init__(self) -> None:
         if not (
             0.0 <= self.strength <= 1.0 and 1.0 <= self.wind_m_s <= 30.0 and -1.0 <= self.sun_elevation_deg <= 89.0
         ):
             raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
-        least = min(self.samples, self.stride, self.count, self.jobs, 1 if self.frames is None else self.frames)
-        if least < 1 or not 32 <= self.size <= 2048 or self.seed < 0:
-            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed not below 0")
+        counts = (self.samples, self.stride, self.count, self.jobs, self.frames, self.threads)
+        least = min(count for count in counts if count is not None)
+        if not 0.0 <= self.crf <= 51.0:
+            raise UsageError(f"--crf: expected 0 to 51, got {self.crf}")
+        if least < 1 or not 32 <= self.size <= 2048 or min(self.seed, self.first) < 0:
+            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed, --first not below 0")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -250,4 +263,46 @@ class StudyConfig:
             raise UsageError("--backend dask and --scheduler ADDRESS go together")
 
 
-Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | RenderConfig | StudyConfig | DemoConfig
+@dataclass(frozen=True, kw_only=True)
+class ReproduceConfig:
+    """Every table and figure of the published experiments, theirs beside ours. Goes on where it stopped."""
+
+    output: Annotated[Path, arg(aliases=["-o"])]
+    """Folder for the report, tables and figures; sections that are in it stay until they are made again."""
+    quick: bool = False
+    """3 told models a sequence instead of 20, 50 simulated runs a setting instead of 1000."""
+    only: tuple[str, ...] = ()
+    """Only these sections, e.g. landmarks poses model times studies failures real."""
+    sequences: tuple[Path, ...] = ()
+    """Folders of sequences with truth.csv, or such sequences; the clips that come along if not given."""
+    networks: tuple[Path, ...] = ()
+    """ONNX detectors; those that come along if not given."""
+    real: Path | None = None
+    """Folder with the recordings marker_pen and temple_ring."""
+    weather: Path | None = None
+    """Folder with one sequence per weather, named KIND-STRENGTH, e.g. fog-0.5."""
+    seeds: int | None = None
+    """Told models a sequence."""
+    study_runs: int | None = None
+    """Simulated runs a setting."""
+    target: Path | None = None
+    """target.toml of sequences that have none of their own; the frigate's if not given."""
+    cache: Path | None = None
+    """Folder for detections and runs, which can be made again; cache in the output if not given."""
+
+    def __post_init__(self) -> None:
+        for name, value in (("seeds", self.seeds), ("study-runs", self.study_runs)):
+            if value is not None and value < 1:
+                raise UsageError(f"--{name}: expected a whole number >= 1, got {value}")
+
+
+Config = (
+    ReproduceConfig
+    | TrackConfig
+    | RefineConfig
+    | EvaluateConfig
+    | SimulateConfig
+    | RenderConfig
+    | StudyConfig
+    | DemoConfig
+)

@@ -6,9 +6,10 @@ import itertools
 import logging
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,7 +21,10 @@ from fairlead.sources.opening import KINDS, is_bag, open_images
 from fairlead.sources.source import Image, ImageFrame, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
-from fairlead.types import Camera, Target, View
+from fairlead.types import Camera, Estimate, Target, View
+
+if TYPE_CHECKING:
+    from fairlead.detect import Detector
 
 _log = logging.getLogger(__name__)
 
@@ -36,14 +40,14 @@ class Seen:
 
 
 class DetectedViews:
-    """The views that a detector finds in a sequence of images.
+    """The views that a detector finds in a sequence of images; each is looked at when it is asked for.
 
     An image that is the one before it, bit by bit, is a camera that froze: nothing is seen in it.
     """
 
-    def __init__(self, images: ImageSource, detect: Callable[[ImageFrame], View]) -> None:
+    def __init__(self, images: ImageSource, detector: "Detector") -> None:
         self._images = images
-        self._detect = detect
+        self._detector = detector
         self._frozen = FrozenCamera()
 
     def __iter__(self) -> Iterator[View]:
@@ -60,6 +64,13 @@ class DetectedViews:
                 view=view, image=image.image, read_ms=1e3 * (read_s - start_s), detect_ms=1e3 * (done_s - read_s)
             )
             start_s = time.perf_counter()
+
+    def follow(self, estimate: Estimate) -> None:
+        """Tell the detector where the estimator sees the target, before the next image is looked at."""
+        self._detector.follow(estimate)
+
+    def _detect(self, image: ImageFrame) -> View:
+        return self._detector.detect(image.image, image.frame, image.stamp_ns)
 
     def count(self) -> int:
         """Number of images; 0 where nobody knows."""
@@ -126,11 +137,19 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
     from fairlead.detect import detector_from_spec
 
     try:
-        detector = detector_from_spec(config.detector, target)
+        detector = detector_from_spec(config.detector, target, camera)
+    except InputError:
+        raise
     except ValueError as error:
         raise UsageError(f"--detector: {str(error).removeprefix('detector: ')}") from error
     images = open_images(source, camera, fps=config.fps, topic=config.topic)
-    return DetectedViews(images, lambda each: detector.detect(each.image, each.frame, each.stamp_ns))
+    return DetectedViews(images, detector)
+
+
+def follow(source: ViewSource, estimate: Estimate) -> None:
+    """Hand the estimate to what looks at the next image, if anything does."""
+    if isinstance(source, DetectedViews):
+        source.follow(estimate)
 
 
 def let_go(source: ViewSource) -> int:

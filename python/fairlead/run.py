@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
-from fairlead.inputs import Seen, let_go, open_camera, open_views, timed_views
+from fairlead.inputs import Seen, follow, let_go, open_camera, open_views, timed_views
 from fairlead.io.attitudes import read_attitudes
 from fairlead.io.errors import InputError
 from fairlead.io.options import load_options
@@ -74,6 +74,7 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
                         readings.tell(estimator, seen.view)
                     estimate = estimator.update(seen.view)
                     update_ms = 1e3 * (time.perf_counter() - start_s)
+                    follow(source, estimate)
                     outcome = Outcome(estimate=estimate, view=seen.view, image=seen.image)
                     folder.write_outcome(outcome, _timing(seen, update_ms))
                     advance(source.work(seen.view))
@@ -209,6 +210,8 @@ def _input_paths(config: InputConfig) -> dict[str, Path]:
     """Every file that was named, by its role."""
     paths = {"target": config.target}
     more = {"camera": config.camera, "options": config.options, "truth": config.truth}
+    if config.detector is not None and config.detector.endswith(".onnx"):
+        more["detector"] = Path(config.detector)
     if isinstance(config, TrackConfig):
         more |= {"range": config.range, "attitude": config.attitude, "mount": config.mount}
     if isinstance(config.source, Path):

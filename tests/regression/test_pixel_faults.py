@@ -57,16 +57,24 @@ class Images:
         return len(self._frames)
 
 
-def follow(target: Target, frames: Iterable[tuple[int, int, np.ndarray]]) -> list[Estimate]:
-    detector: Detector = detector_from_spec(DETECTOR, target)
+class Remembering:
+    """A detector that looks at each image once."""
 
-    def detect(each: ImageFrame) -> View:
-        key = hashlib.sha256(each.image.tobytes()).digest()
+    def __init__(self, target: Target) -> None:
+        self._detector: Detector = detector_from_spec(DETECTOR, target)
+
+    def detect(self, image: np.ndarray, frame: int, stamp_ns: int) -> View:
+        key = hashlib.sha256(image.tobytes()).digest()
         if key not in SEEN:
-            SEEN[key] = detector.detect(each.image, 0, 0)
-        return replace(SEEN[key], frame=each.frame, stamp_ns=each.stamp_ns)
+            SEEN[key] = self._detector.detect(image, 0, 0)
+        return replace(SEEN[key], frame=frame, stamp_ns=stamp_ns)
 
-    views = DetectedViews(Images(frames), detect)
+    def follow(self, estimate: Estimate) -> None:
+        self._detector.follow(estimate)
+
+
+def follow(target: Target, frames: Iterable[tuple[int, int, np.ndarray]]) -> list[Estimate]:
+    views = DetectedViews(Images(frames), Remembering(target))
     tracker = Tracker(target, CAMERA)
     return [tracker.update(view) for view in views]
 

@@ -28,6 +28,7 @@ from fairlead.opencv.markers import (
 )
 from fairlead.opencv.pnp import MIN_POINTS, PnpSolution, epnp, ideal_pixels, ippe, refine, sqpnp
 from fairlead.opencv.pnp_views import epnp_views
+from fairlead.opencv.silhouettes import filled_triangles
 
 __all__ = [
     "MIN_POINTS",
@@ -47,6 +48,7 @@ __all__ = [
     "fill_polygon",
     "fill_region",
     "fill_triangles",
+    "filled_triangles",
     "grey",
     "ideal_pixels",
     "image_size",

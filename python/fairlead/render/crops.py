@@ -54,6 +54,8 @@ class CropJob:
     quality: Quality = "draft"
     samples: int = 16
     """Light paths per pixel, full quality only."""
+    threads: int | None = None
+    """Of Cycles; one per core if None."""
     weather_share: float = 0.35
     """How many crops have weather [-]."""
 
@@ -157,7 +159,8 @@ class CropMaker:
         from fairlead.render.cycles.tracer import Tracer
 
         stage, surroundings = self._stage, scene.surroundings
-        tracer = Tracer(self._renderer, stage.model, stage.painted, surroundings, self._job.samples)
+        job = self._job
+        tracer = Tracer(self._renderer, stage.model, stage.painted, surroundings, job.samples, job.threads)
         return lambda shot, seed: tracer.render(shot, scene.waves, seed)[0]
 
     def _crop(
