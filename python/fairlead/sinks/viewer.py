@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the estimator believes in three dimensions, by rerun: live, or as a file to look at later."""
 
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,10 @@ from fairlead.sinks.overlay.caption import STATUS_COLOUR
 from fairlead.sinks.sink import Outcome
 from fairlead.types import Camera, Matrix4, PoseEstimator, Target
 
+_log = logging.getLogger(__name__)
+
 JPEG_QUALITY = 85
+_GOODBYE_S = 3.0
 _SHOWN_SIGMAS = 3.0
 _BLUE, _YELLOW, _GREEN, _RED, _WHITE = (70, 190, 255), (255, 220, 60), (120, 255, 120), (255, 90, 90), (255, 255, 255)
 _TARGET, _CAMERA = "target", "target/camera"
@@ -48,7 +52,10 @@ class ViewerSink:
             rrd.open("wb").close()  # where that fails, rerun would only say so in its log
         sinks = ([] if rrd is None else [rerun.FileSink(str(rrd))]) + ([rerun.GrpcSink()] if live else [])
         if live:
-            self._stream.spawn(connect=False)
+            try:
+                self._stream.spawn(connect=False)
+            except RuntimeError as error:
+                raise InputError("--viewer", f"cannot be started: {error}") from error
         self._stream.set_sinks(*sinks, default_blueprint=self._blueprint())
         self._last: np.ndarray | None = None
         self._size = float(np.ptp(target.positions, axis=0).max())
@@ -144,9 +151,12 @@ class ViewerSink:
     def close(self) -> None:
         """Write what is left; safe to call twice."""
         if self._stream is not None:
-            self._stream.flush(timeout_sec=10.0)
-            self._stream.disconnect()
-            self._stream = None
+            stream, self._stream = self._stream, None
+            try:
+                stream.flush(timeout_sec=_GOODBYE_S)
+            except RuntimeError as error:  # somebody closed the viewer
+                _log.warning("viewer: %s", (str(error).splitlines() or ["is gone"])[0])
+            stream.disconnect()
 
 
 def _up_to_now(layout: Any, rr: Any) -> Any:
