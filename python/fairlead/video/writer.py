@@ -28,6 +28,7 @@ class VideoWriter:
     def __init__(self, path: Path, *, codec: Codec = "h264") -> None:
         import av
 
+        path.open("wb").close()  # an error that names the file
         self._path = path
         self._container: Any = av.open(str(path), "w", format="matroska", options=_MUXER)
         self._codec: Codec = codec
@@ -58,8 +59,11 @@ class VideoWriter:
         return stream
 
     def _mux(self, frame: Any) -> None:
-        for packet in self._stream.encode(frame):
-            self._container.mux(packet)
+        try:
+            for packet in self._stream.encode(frame):
+                self._container.mux(packet)
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(self._path)) from error
 
     def close(self) -> None:
         """Finish the file; safe to call twice."""
