@@ -7,31 +7,13 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
-from tyro.constructors import PrimitiveConstructorSpec
 
-from fairlead.types import Autopilot
+from fairlead.sinks.autopilots import Autopilot
+from fairlead.sources.argument import Source
 
 Method = Literal["map", "window", "epnp"]
 StudyKind = Literal["noise", "angle", "grid"]
 Backend = Literal["threads", "dask"]
-
-
-def parse_source(text: str) -> Path | str:
-    """A path, or the name of something live as it is."""
-    return text if "://" in text or text.startswith("camera:") else Path(text)
-
-
-Source = Annotated[
-    Path | str,
-    PrimitiveConstructorSpec(
-        nargs=1,
-        metavar="SOURCE",
-        instance_from_str=lambda words: parse_source(words[0]),
-        is_instance=lambda value: isinstance(value, Path | str),
-        str_from_instance=lambda value: [str(value)],
-    ),
-]
-"""A path, or text for what is live: `camera:0`, `rtsp://...`."""
 
 
 class UsageError(ValueError):
@@ -86,6 +68,10 @@ class TrackConfig(InputConfig):
     overlay: Path | None = None
     """Video (.mkv) of the images with silhouette, landmarks and their uncertainty drawn over them."""
 
+    viewer: bool = False
+    """Show it while it runs (rerun)."""
+    rrd: Path | None = None
+    """File (.rrd) of what the viewer shows, to look at later with `rerun FILE`."""
     mcap: Path | None = None
     """ROS 2 messages of every frame: /fairlead/pose, /tf, /diagnostics."""
     mavlink: str | None = None
