@@ -6,6 +6,7 @@ Works with OpenCV 4 and 5. Every pose that comes back was checked (docs/baseline
 measured by its header before it was decoded. `cv2.FileStorage` is not used: it corrupts the heap on malformed files.
 """
 
+from fairlead.opencv.flow import carry_points
 from fairlead.opencv.images import GreyImage, Image, grey, image_size, read_image
 from fairlead.opencv.markers import (
     FoundCorners,
@@ -24,6 +25,7 @@ __all__ = [
     "GreyImage",
     "Image",
     "PnpSolution",
+    "carry_points",
     "charuco_corners",
     "chessboard_corners",
     "epnp",
