@@ -17,6 +17,7 @@ import tyro
 from tyro.conf import subcommand
 
 from fairlead.config import (
+    AnnotateConfig,
     Config,
     DemoConfig,
     EvaluateConfig,
@@ -43,6 +44,7 @@ _Command = (
     | Annotated[SimulateConfig, subcommand("simulate")]
     | Annotated[RenderConfig, subcommand("render")]
     | Annotated[StudyConfig, subcommand("study")]
+    | Annotated[AnnotateConfig, subcommand("annotate")]
 )
 
 
@@ -101,6 +103,8 @@ def _run(config: Config) -> int:
         return _render(config)
     if isinstance(config, StudyConfig):
         return _study(config)
+    if isinstance(config, AnnotateConfig):
+        return _annotate(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -145,6 +149,17 @@ def _render(config: RenderConfig) -> int:
     except RenderError as error:
         return _complain(str(error), 2)
     sys.stdout.write(f"{config.output}: {made} pictures made\n")
+    return 0
+
+
+def _annotate(config: AnnotateConfig) -> int:
+    from fairlead.prepare import annotate
+
+    def tell(address: str) -> None:
+        sys.stdout.write(f"{config.folder}: {address} (Ctrl-C ends it; every action is saved at once)\n")
+        sys.stdout.flush()
+
+    annotate(config, tell)
     return 0
 
 

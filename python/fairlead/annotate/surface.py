@@ -150,6 +150,34 @@ def _sharp_edges(faces: Int64[np.ndarray, "m 3"], normals: Points3) -> Edges:
     return Edges(ends=unique[kept].astype(np.int64), faces=pairs[kept], turns_rad=turns[kept])
 
 
+def _linearise(visual: Any) -> None:
+    """Colours by face or vertex are sRGB in files; glTF wants them linear (IEC 61966-2-1)."""
+    if visual.kind not in ("face", "vertex"):
+        return
+    colours = np.array(visual.face_colors if visual.kind == "face" else visual.vertex_colors)
+    c = colours[:, :3] / 255.0
+    linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    colours[:, :3] = np.round(255.0 * linear)
+    if visual.kind == "face":
+        visual.face_colors = colours
+    else:
+        visual.vertex_colors = colours
+
+
+def _matt(tree: dict[str, Any]) -> None:
+    """Matt and two-sided in a browser: glTF takes what has no material for polished metal, which is black."""
+    materials = tree.setdefault("materials", [])
+    for material in materials:
+        material.setdefault("pbrMetallicRoughness", {}).update(metallicFactor=0.0, roughnessFactor=0.9)
+        material["doubleSided"] = True
+    plain = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.9}, "doubleSided": True}
+    for primitive in (each for mesh in tree.get("meshes", []) for each in mesh["primitives"]):
+        if "material" not in primitive:
+            if plain not in materials:
+                materials.append(plain)
+            primitive["material"] = materials.index(plain)
+
+
 def load_surface(path: Path, scale: float = 1.0) -> Surface:
     """Read PLY, OBJ, STL, glTF; `scale` turns its unit into metres. Raises InputError: no readable triangles."""
     import trimesh
@@ -165,8 +193,9 @@ def load_surface(path: Path, scale: float = 1.0) -> Surface:
     try:
         mesh = trimesh.load(path, force="mesh", process=False)
         mesh.apply_scale(scale)  # pyright: ignore[reportAttributeAccessIssue]
+        _linearise(cast(Any, mesh).visual)
         corners = np.array(mesh.triangles, dtype=np.float64)  # pyright: ignore[reportAttributeAccessIssue]
-        glb = cast(Any, mesh).export(file_type="glb")
+        glb = cast(Any, mesh).export(file_type="glb", tree_postprocessor=_matt)
     except Exception as error:  # any loader of trimesh may raise what it likes on a broken file
         first_line = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise InputError(path, f"no readable mesh: {first_line}") from error
