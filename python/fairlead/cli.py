@@ -17,6 +17,7 @@ import tyro
 from tyro.conf import subcommand
 
 from fairlead.config import (
+    AnnotateConfig,
     Config,
     DemoConfig,
     EvaluateConfig,
@@ -48,6 +49,7 @@ _Command = (
     | Annotated[CalibrateConfig, subcommand("calibrate")]
     | Annotated[ExportConfig, subcommand("export")]
     | Annotated[ReproduceConfig, subcommand("reproduce")]
+    | Annotated[AnnotateConfig, subcommand("annotate")]
 )
 
 
@@ -110,6 +112,8 @@ def _run(config: Config | NetworkConfig) -> int:
         return _network(config)
     if isinstance(config, ReproduceConfig):
         return _reproduce(config)
+    if isinstance(config, AnnotateConfig):
+        return _annotate(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -167,6 +171,17 @@ def _network(config: NetworkConfig) -> int:
     except TrainingError as error:
         return _complain(str(error), 2)
     sys.stdout.write("".join(f"{line}\n" for line in lines))
+    return 0
+
+
+def _annotate(config: AnnotateConfig) -> int:
+    from fairlead.prepare import annotate
+
+    def tell(address: str) -> None:
+        sys.stdout.write(f"{config.folder}: {address} (Ctrl-C ends it; every action is saved at once)\n")
+        sys.stdout.flush()
+
+    annotate(config, tell)
     return 0
 
 
