@@ -129,6 +129,8 @@ def _run(config: Config | NetworkConfig) -> int:
     counts = f"{verb.frames} frames, {verb.frames_with_pose} with a pose ({verb.coverage:.1%})"
     if verb.report is not None:
         _show_metrics(verb.report)
+    if verb.range_bias is not None:
+        counts += ", range finder off by {:+.2f} ± {:.2f} m".format(*verb.range_bias)
     sys.stdout.write(f"{verb.output}: {counts}\n")
     if verb.coverage < config.min_coverage:
         return _complain(f"coverage {verb.coverage:.1%} is below --min-coverage {config.min_coverage:.1%}", 1)

@@ -39,6 +39,10 @@ class InputConfig:
     """truth.csv; the run is then evaluated as well."""
     options: Path | None = None
     """TOML file of estimator options."""
+    range: Path | None = None
+    """range.csv: readings of a range finder (method map)."""
+    attitude: Path | None = None
+    """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
     fps: float | None = None
     """Frames per second of images without stamps [1/s]."""
     topic: str | None = None
@@ -61,10 +65,6 @@ class TrackConfig(InputConfig):
 
     method: Method = "map"
     """map: this project's estimator. window: the published one. epnp: each frame alone."""
-    range: Path | None = None
-    """range.csv: readings of a range finder (method map)."""
-    attitude: Path | None = None
-    """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
     overlay: Path | None = None
     """Video (.mkv) of the images with silhouette, landmarks and their uncertainty drawn over them."""
 
@@ -94,6 +94,16 @@ class TrackConfig(InputConfig):
 @dataclass(frozen=True, kw_only=True)
 class RefineConfig(InputConfig):
     """Refine landmarks and poses of a whole flight in one batch."""
+
+    range_bias_sigma_m: float = 0.0
+    """What the range finder may be off by, always the same, 1 sigma [m]; above 0 it is estimated."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 <= self.range_bias_sigma_m < float("inf"):
+            raise UsageError(f"--range-bias-sigma-m: expected zero or more metres, got {self.range_bias_sigma_m}")
+        if self.range_bias_sigma_m > 0.0 and self.range is None:
+            raise UsageError("--range-bias-sigma-m: expected --range too")
 
 
 @dataclass(frozen=True, kw_only=True)
