@@ -7,7 +7,7 @@ import logging
 import math
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ from fairlead.sources.opening import KINDS, is_bag, open_images
 from fairlead.sources.source import Image, ImageFrame, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
+from fairlead.tracker import TrackerOptions
 from fairlead.types import Camera, Estimate, Target, View
 
 if TYPE_CHECKING:
@@ -64,6 +65,11 @@ class DetectedViews:
                 view=view, image=image.image, read_ms=1e3 * (read_s - start_s), detect_ms=1e3 * (done_s - read_s)
             )
             start_s = time.perf_counter()
+
+    @property
+    def correlation_time_s(self) -> float:
+        """How long the detector's errors stay alike [s]."""
+        return self._detector.correlation_time_s
 
     def follow(self, estimate: Estimate) -> None:
         """Tell the detector where the estimator sees the target, before the next image is looked at."""
@@ -144,6 +150,13 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
         raise UsageError(f"--detector: {str(error).removeprefix('detector: ')}") from error
     images = open_images(source, camera, fps=config.fps, topic=config.topic)
     return DetectedViews(images, detector)
+
+
+def told_correlation(source: ViewSource, options: TrackerOptions) -> TrackerOptions:
+    """The options, with what the detector says of its errors where they say nothing."""
+    if options.correlation_time_s > 0.0 or not isinstance(source, DetectedViews):
+        return options
+    return replace(options, correlation_time_s=source.correlation_time_s)
 
 
 def follow(source: ViewSource, estimate: Estimate) -> None:

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
-from fairlead.inputs import Seen, follow, let_go, open_camera, open_views, timed_views
+from fairlead.inputs import Seen, follow, let_go, open_camera, open_views, timed_views, told_correlation
 from fairlead.io.attitudes import read_attitudes
 from fairlead.io.errors import InputError
 from fairlead.io.options import load_options
@@ -60,7 +60,7 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
     target, camera = _load(config)
     source = open_views(config, target, camera)
     readings = sensor_readings(config, target)
-    options = tracker_options(config.options)
+    options = told_correlation(source, tracker_options(config.options))
     if any(reading.landmark is None for reading in readings.ranges):
         options = replace(options, range_to_origin=True)
     estimator = make_estimator(config, options, target, camera)
@@ -92,7 +92,7 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
     target, camera = _load(config)
     source = open_views(config, target, camera)
     readings = sensor_readings(config, target)
-    options = tracker_options(config.options)
+    options = told_correlation(source, tracker_options(config.options))
     views_seen = timed_views(source, config.source)
     with RunFolder(config.output, _record("refine", config, options), target, camera) as folder:
         folder.open_sinks(None)

@@ -18,6 +18,11 @@ NETWORK_SUFFIX = ".onnx"
 class Detector(Protocol):
     """Finds the landmarks of a target in an image."""
 
+    @property
+    def correlation_time_s(self) -> float:
+        """How long its errors stay alike from image to image, docs/motion.md eq. (12) [s]."""
+        ...
+
     def detect(self, image: Image, frame: int, stamp_ns: int) -> View:
         """The landmarks seen in one image (blue, green, red); an empty view where there are none."""
         ...

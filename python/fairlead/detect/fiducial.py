@@ -25,6 +25,9 @@ class TagDetector:
     Raises ValueError for an unknown family, or a target without such landmarks.
     """
 
+    correlation_time_s = 0.0
+    """Corners are measured anew in every image."""
+
     def __init__(self, family: str, target: Target | None = None) -> None:
         self._family = family
         self._cells = opencv.marker_cells(family)
@@ -102,6 +105,9 @@ class BoardDetector:
 
     Raises ValueError for a target without such landmarks.
     """
+
+    correlation_time_s = 0.0
+    """Corners are measured anew in every image."""
 
     def __init__(self, board: CharucoBoard | Chessboard, target: Target | None = None) -> None:
         self._board = board

@@ -39,6 +39,11 @@ class NetworkDetector:
         self.acquisitions = 0
         """How often the whole image was searched."""
 
+    @property
+    def correlation_time_s(self) -> float:
+        """As its card says: neighbouring images show the same pixels of the same target."""
+        return self.network.card.calibration.correlation_time_s
+
     def detect(self, image: Image, frame: int, stamp_ns: int) -> View:
         """The landmarks that are seen; an empty view where the target is not found."""
         sighting = self._followed(image, stamp_ns)

@@ -92,6 +92,8 @@ class Calibration:
     """simcc, heatmap: standard deviation of each coordinate, one or one a landmark [px of the crop]."""
     spread_factor: float = 0.0
     """simcc, heatmap: what is added of the peak's own covariance [-]."""
+    correlation_time_s: float = 8.0
+    """Errors of two images this far apart in time are e times less alike, docs/motion.md eq. (12) [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,6 +238,7 @@ def _calibration(fields: Fields, landmarks: int, kind: Kind) -> Calibration:
         tail_dof=_number(fields, "tail_dof", 0.0, 0.1, 1e6) if "tail_dof" in fields else None,
         sigma_px=sigma,
         spread_factor=_number(fields, "spread_factor", default.spread_factor, 0.0, 1e3),
+        correlation_time_s=_number(fields, "correlation_time_s", default.correlation_time_s, 0.0, 1e4),
     )
 
 
