@@ -2,26 +2,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a codec costs: how far the image about each visible landmark moves when a rendered sequence becomes a clip.
 
-    python -m benchmarks.codec SCENE --crf 22 26 30 --last 50
+    python -m benchmarks.codec SCENE --crf 22 26 30 --last 50 [--network frigate.onnx]
 
 SCENE is a folder written by `fairlead render`. One line per rate factor, and one for other noise of the sensor where
-the scene kept its light. docs/rendering.md section 10.
+the scene kept its light. With a network, also how far its keypoints move, and how wrong they are.
+docs/rendering.md section 10.
 """
 
 import argparse
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float64, UInt8
+from jaxtyping import Bool, Float64, UInt8
 
+from fairlead.detect.onnx import Network
+from fairlead.detect.window import window_about
 from fairlead.io.csv_lines import read_csv
 from fairlead.opencv import grey, read_image
 from fairlead.render.frame_files import linear_path, load_linear, picture_path
 from fairlead.render.truth_tables import COLUMNS
+from fairlead.types import Pixels
 
 RADIUS_PX, SIGMA_PX = 10, 4.0
 """Of the window about a landmark: half its side, and of its Gaussian weight."""
@@ -44,21 +49,36 @@ def shift(before: Patch, after: Patch, centre: tuple[float, float]) -> Float64[n
     return np.linalg.solve(J.T @ weighted + 1e-9 * np.eye(3), weighted.T @ difference)[:2]
 
 
-def visible_landmarks(scene: Path) -> dict[int, list[tuple[float, float]]]:
-    """Pixels by frame."""
-    found: dict[int, list[tuple[float, float]]] = {}
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Landmarks:
+    """The true ones of one picture."""
+
+    names: tuple[str, ...]
+    pixels: Pixels
+    visible: Bool[np.ndarray, "n"]
+
+
+def true_landmarks(scene: Path) -> dict[int, Landmarks]:
+    """By frame."""
+    rows: dict[int, list[tuple[str, float, float, bool]]] = {}
     for _, cells in read_csv(scene / "landmarks_true.csv", COLUMNS):
-        pixels = found.setdefault(int(cells["frame"]), [])
-        if cells["state"] == "visible":
-            pixels.append((float(cells["u_px"]), float(cells["v_px"])))
-    return found
+        row = (cells["landmark"], float(cells["u_px"]), float(cells["v_px"]), cells["state"] == "visible")
+        rows.setdefault(int(cells["frame"]), []).append(row)
+    return {
+        frame: Landmarks(
+            names=tuple(name for name, *_ in found),
+            pixels=np.array([[u, v] for _, u, v, _ in found]),
+            visible=np.array([seen for *_, seen in found]),
+        )
+        for frame, found in rows.items()
+    }
 
 
-def shifts(before: BgrImage, after: BgrImage, pixels: Sequence[tuple[float, float]]) -> list[np.ndarray]:
-    """Of all landmarks whose window lies in the image."""
+def shifts(before: BgrImage, after: BgrImage, landmarks: Landmarks) -> list[np.ndarray]:
+    """Of all visible landmarks whose window lies in the image."""
     first, second = (grey(image).astype(np.float64) for image in (before, after))
     reach, found = RADIUS_PX + 1, []
-    for u, v in pixels:
+    for u, v in landmarks.pixels[landmarks.visible].tolist():
         x, y = round(u), round(v)
         if min(x, y) >= reach and x + reach < first.shape[1] and y + reach < first.shape[0]:
             window = np.s_[y - reach : y + reach + 1, x - reach : x + reach + 1]
@@ -101,7 +121,22 @@ def noisy(scene: Path, frames: Sequence[int]) -> Iterator[BgrImage]:
         yield np.ascontiguousarray(develop(kept[0].radiance, sensor, np.random.default_rng([1, frame, 3]))[..., ::-1])
 
 
-def report(name: str, moved: Sequence[np.ndarray]) -> str:
+def keypoints(network: Network, image: BgrImage, landmarks: Landmarks) -> Pixels:
+    """Where the network finds the visible landmarks, in the square that a tracker would show it."""
+    low, high = landmarks.pixels.min(axis=0), landmarks.pixels.max(axis=0)
+    side = network.card.input.pad * float((high - low).max())
+    window = window_about(0.5 * (low + high), side, network.size)
+    found = network.look(window.cut(image)).in_image(window).pixels
+    names = [name for name, seen in zip(landmarks.names, landmarks.visible, strict=True) if seen]
+    return found[[network.card.landmarks.index(name) for name in names]]
+
+
+def found_in(network: Network, images: Sequence[BgrImage], shown: Sequence[Landmarks]) -> Pixels:
+    """The keypoints of all pictures, one after another."""
+    return np.concatenate([keypoints(network, image, truth) for image, truth in zip(images, shown, strict=True)])
+
+
+def report(name: str, moved: Sequence[np.ndarray] | Pixels) -> str:
     """One line of the table."""
     lengths = np.linalg.norm(moved, axis=1)
     rms = float(np.sqrt(np.mean(np.square(moved))))
@@ -114,20 +149,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("scene", type=Path)
     parser.add_argument("--crf", type=float, nargs="+", default=[22.0, 26.0, 30.0])
     parser.add_argument("--last", type=int, default=50, help="so many frames, the last of the scene")
+    parser.add_argument("--network", type=Path, help="ONNX file of a landmark network")
     options = parser.parse_args(arguments)
-    landmarks = visible_landmarks(options.scene)
+    landmarks = true_landmarks(options.scene)
     frames = [frame for frame in sorted(landmarks) if picture_path(options.scene, frame).is_file()][-options.last :]
     images = [read_image(picture_path(options.scene, frame)) for frame in frames]
     stamps = [40_000_000 * frame for frame in frames]
+    shown = [landmarks[frame] for frame in frames]
+    network = None if options.network is None else Network(options.network)
+    exact = np.concatenate([each.pixels[each.visible] for each in shown])
+    original = None if network is None else found_in(network, images, shown)
     print("| | landmarks | rms of a coordinate [px] | median length | 95 % | largest |\n|---|---|---|---|---|---|")
     if all(linear_path(options.scene, frame).is_file() for frame in frames):
-        others = zip(images, noisy(options.scene, frames), frames, strict=True)
-        print(report("other noise", [each for a, b, k in others for each in shifts(a, b, landmarks[k])]))
+        others = zip(images, noisy(options.scene, frames), shown, strict=True)
+        print(report("other noise", [each for a, b, truth in others for each in shifts(a, b, truth)]))
+    if original is not None:
+        print(report("error of the keypoints", original - exact))
     for crf in options.crf:
         decoded, size = coded(images, stamps, crf)
-        pairs = zip(images, decoded, frames, strict=True)
-        moved = [each for a, b, k in pairs for each in shifts(a, b, landmarks[k])]
+        pairs = zip(images, decoded, shown, strict=True)
+        moved = [each for a, b, truth in pairs for each in shifts(a, b, truth)]
         print(report(f"crf {crf:g}, {size:.0f} kB a picture", moved), flush=True)
+        if network is not None and original is not None:
+            found = found_in(network, decoded, shown)
+            print(report(f"crf {crf:g}: keypoints move by", found - original))
+            print(report(f"crf {crf:g}: error of the keypoints", found - exact), flush=True)
     return 0
 
 

@@ -17,6 +17,7 @@ import tyro
 from tyro.conf import subcommand
 
 from fairlead.config import (
+    AnnotateConfig,
     Config,
     DemoConfig,
     EvaluateConfig,
@@ -48,6 +49,7 @@ _Command = (
     | Annotated[CalibrateConfig, subcommand("calibrate")]
     | Annotated[ExportConfig, subcommand("export")]
     | Annotated[ReproduceConfig, subcommand("reproduce")]
+    | Annotated[AnnotateConfig, subcommand("annotate")]
 )
 
 
@@ -110,6 +112,8 @@ def _run(config: Config | NetworkConfig) -> int:
         return _network(config)
     if isinstance(config, ReproduceConfig):
         return _reproduce(config)
+    if isinstance(config, AnnotateConfig):
+        return _annotate(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -125,6 +129,8 @@ def _run(config: Config | NetworkConfig) -> int:
     counts = f"{verb.frames} frames, {verb.frames_with_pose} with a pose ({verb.coverage:.1%})"
     if verb.report is not None:
         _show_metrics(verb.report)
+    if verb.range_bias is not None:
+        counts += ", range finder off by {:+.2f} ± {:.2f} m".format(*verb.range_bias)
     sys.stdout.write(f"{verb.output}: {counts}\n")
     if verb.coverage < config.min_coverage:
         return _complain(f"coverage {verb.coverage:.1%} is below --min-coverage {config.min_coverage:.1%}", 1)
@@ -167,6 +173,17 @@ def _network(config: NetworkConfig) -> int:
     except TrainingError as error:
         return _complain(str(error), 2)
     sys.stdout.write("".join(f"{line}\n" for line in lines))
+    return 0
+
+
+def _annotate(config: AnnotateConfig) -> int:
+    from fairlead.prepare import annotate
+
+    def tell(address: str) -> None:
+        sys.stdout.write(f"{config.folder}: {address} (Ctrl-C ends it; every action is saved at once)\n")
+        sys.stdout.flush()
+
+    annotate(config, tell)
     return 0
 
 

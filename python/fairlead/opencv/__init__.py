@@ -18,6 +18,7 @@ from fairlead.opencv.drawing import (
     resample,
 )
 from fairlead.opencv.filters import warp_affine
+from fairlead.opencv.flow import carry_points
 from fairlead.opencv.images import GreyImage, Image, decode_image, grey, image_size, read_image
 from fairlead.opencv.markers import (
     FoundCorners,
@@ -39,6 +40,7 @@ __all__ = [
     "Image",
     "Line",
     "PnpSolution",
+    "carry_points",
     "charuco_corners",
     "chessboard_corners",
     "contours",

@@ -47,7 +47,7 @@ def render(
     depth: bool = False,
     reuse: Path | None = None,
     clip: Path | None = None,
-    crf: float = 26.0,
+    crf: float = 24.0,
     count: int = 1000,
     empty: float = 0.0,
     size: int = 256,
