@@ -177,16 +177,7 @@ class CropMaker:
             T_world_target=T_world_target,
             others=self._stage.others(T_world_target, rng),
         )
-        empty = np.random.default_rng([job.seed, number, 4])
-        if empty.random() < job.empty_share:
-            stand_in = self._stage.stand_in(T_world_target, empty)
-            away = behind_camera(shot.T_camera_target, T_world_target)
-            shot = replace(
-                shot,
-                T_camera_target=shot.T_camera_target @ away,
-                T_world_target=T_world_target @ away,
-                others=[*shot.others, *stand_in],
-            )
+        shot = self._without_target(number, shot)
         image = light(shot, number)
         seen = see(_moved(job.target, scene), view.camera, shot.T_camera_target, scene.caster)
         visibility = np.array([{"outside": 0, "hidden": 1, "visible": 2}[state] for state in seen.states])
@@ -210,6 +201,20 @@ class CropMaker:
                 K=view.camera.K,
                 T_camera_target=shot.T_camera_target,
             )
+        )
+
+    def _without_target(self, number: int, shot: Shot) -> Shot:
+        """The same shot, or, in a share of the crops, with the target behind the camera, and often another ship."""
+        rng = np.random.default_rng([self._job.seed, number, 4])
+        if rng.random() >= self._job.empty_share:
+            return shot
+        stand_in = self._stage.stand_in(shot.T_world_target, rng)
+        away = behind_camera(shot.T_camera_target, shot.T_world_target)
+        return replace(
+            shot,
+            T_camera_target=shot.T_camera_target @ away,
+            T_world_target=shot.T_world_target @ away,
+            others=[*shot.others, *stand_in],
         )
 
     def _photograph(

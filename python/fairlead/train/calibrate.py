@@ -38,7 +38,8 @@ def calibrate_network(
 ) -> list[str]:
     """Write calibration.toml, accuracy.csv, accuracy.md and reliability.png; returns lines for people.
 
-    Fitted on one half of the crops; tables and figure show the other half, and sequences. Raises InputError.
+    Fitted on one half of the crops; tables and figure show the other half, sequences, and folders of few crops. Raises
+    InputError.
     """
     lesson = load_lesson(checkpoint)
     opened = [open_pictures(folder, lesson.landmarks, lesson.size, seed) for folder in folders]
@@ -47,7 +48,9 @@ def calibrate_network(
             look(lesson, pictures, condition=k, focal_px=focal_px, middle=middle, advance=advance)
             for k, (_, pictures) in enumerate(opened)
         ])  # fmt: skip
-    crops = np.array([not is_bop(folder) for folder in folders])
+    crops = np.array(
+        [count >= 2 * HALF and not is_bop(folder) for folder, (count, _) in zip(folders, opened, strict=True)]
+    )
     fitted = crops[findings.condition] & ((findings.picture // HALF) % 2 == 0)
     if not (findings.visibility[fitted] == 2).any() or not (findings.visibility[~fitted] == 2).any():
         raise InputError(folders[0], f"expected crops, at least {2 * HALF}, to calibrate with")

@@ -3,6 +3,7 @@
 """What `fairlead train`, `calibrate` and `export` do with their arguments. torch is imported when one of them runs."""
 
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
 
 from fairlead.io.camera import load_camera
@@ -31,12 +32,13 @@ def train(
     threads: int | None = None,
     workers: int = 1,
     precision: str = "auto",
+    settle: int = 8192,
     seed: int = 0,
     progress: ProgressFactory = silent,
 ) -> list[str]:
     """Train; returns lines for people. Raises InputError, TrainingError."""
-    if min(crops, batch, threads or 1) < 1 or min(workers, seed) < 0:
-        raise TrainingError("train: expected whole numbers above 0, --workers and --seed not below 0")
+    if min(crops, batch, threads or 1) < 1 or min(workers, settle, seed) < 0:
+        raise TrainingError("train: expected whole numbers above 0, --workers, --settle and --seed not below 0")
     if not 0.0 < rate < 1.0 or size % 128 or not 128 <= size <= 1024:
         raise TrainingError("train: expected --rate between 0 and 1, --size a multiple of 128 from 128 to 1024")
     _needs_torch()
@@ -48,7 +50,7 @@ def train(
         raise InputError(target, f"expected the landmarks of {data[0]}: {', '.join(learned.landmarks)}")
     course = Course(
         network=network, output=output, crops=crops, batch=batch, rate=rate, size=size, threads=threads,
-        workers=workers, seed=seed, start=start, precision=precision,
+        workers=workers, seed=seed, start=start, precision=precision, settle=settle,
     )  # fmt: skip
     return follow(course, learned, held_out, progress=progress)
 
@@ -95,8 +97,7 @@ def export(
 
 def _needs_torch() -> None:
     try:
-        import lightning  # noqa: F401
-        import onnx  # noqa: F401
-        import torch  # noqa: F401
+        for name in ("torch", "lightning", "onnx"):
+            import_module(name)
     except ImportError as error:
         raise TrainingError(f"{error.name} is not installed: pip install 'fairlead[train]'") from error

@@ -41,6 +41,8 @@ class TrainConfig:
     """Processes that read crops."""
     precision: Literal["auto", "32", "bf16", "16"] = "auto"
     """Of the arithmetic: auto is 16 on a GPU and 32 without; bf16 is faster on some processors."""
+    settle: int = 8192
+    """Crops on which, after the course, covariance and visibility alone learn on; 0: none."""
     seed: int = 0
     """Of everything that is drawn by chance."""
 

@@ -20,7 +20,7 @@ from fairlead.io.errors import InputError
 from fairlead.progress import Progress, ProgressFactory, silent
 from fairlead.train.crops import Crops, collate
 from fairlead.train.curves import draw_curves
-from fairlead.train.lesson import Lesson
+from fairlead.train.lesson import Lesson, Settling
 
 EPOCH = 4096
 """Crops between two checkpoints, drawn anew from all that there are."""
@@ -30,7 +30,7 @@ STAGES = ((0.45, 2), (0.7, 3))
 """Until which share of the course crops are shown at so many quarters of their side: cheaper by the square."""
 AVERAGED = 0.05
 """Share of the course's steps that the average of the weights reaches back, which is what is validated and kept."""
-LAST = "last.ckpt"
+LAST, SETTLED = "last.ckpt", "settled.ckpt"
 PRECISIONS: dict[str, Any] = {"auto": None, "32": "32-true", "bf16": "bf16-mixed", "16": "16-mixed"}
 
 
@@ -49,6 +49,7 @@ class Course:
     seed: int = 0
     start: Path | None = None
     precision: str = "auto"
+    settle: int = 8192
 
     @property
     def epoch(self) -> int:
@@ -150,10 +151,37 @@ def follow(course: Course, learned: Crops, held_out: Crops, *, progress: Progres
             )  # fmt: skip
         except SystemExit as end:  # the trainer's answer to Ctrl-C, after it has put things away
             raise (end.__context__ or KeyboardInterrupt()) from None
+    settled = settle(course, learned, progress=progress) if course.settle else last
     curves = draw_curves(course.output)
     found = {name: float(value) for name, value in trainer.callback_metrics.items() if name.startswith("valid/")}
     lines += [f"{name[6:]}: {value:.3f}" for name, value in sorted(found.items())]
-    return [*lines, str(last), *([] if curves is None else [str(curves)])]
+    return [*lines, str(settled), *([] if curves is None else [str(curves)])]
+
+
+def settle(course: Course, learned: Crops, *, progress: ProgressFactory = silent) -> Path:
+    """Covariance and visibility learned on, on whole crops, with everything else held; writes settled.ckpt."""
+    path, last = course.output / SETTLED, course.output / LAST
+    if path.exists() and path.stat().st_mtime >= last.stat().st_mtime:
+        return path
+    steps = max(1, course.settle // course.batch)
+    settling = Settling(load_lesson(last), steps)
+    learned.epoch, learned.size = course.epochs, course.size
+    draw = Draw(learned, steps * course.batch)
+    loader = DataLoader(learned, course.batch, sampler=draw, collate_fn=collate, num_workers=course.workers)
+    with progress("covariances", lambda: len(draw)) as advance, _quiet(course.seed):
+        trainer = lightning.Trainer(
+            max_epochs=1, gradient_clip_val=1.0, callbacks=[Told(course, advance)], logger=False,
+            enable_checkpointing=False, enable_model_summary=False, enable_progress_bar=False,
+        )  # fmt: skip
+        try:
+            trainer.fit(settling, loader)
+        except SystemExit as end:
+            raise (end.__context__ or KeyboardInterrupt()) from None
+    part = path.with_name(f".{path.name}.part")
+    parts = {"state_dict": settling.lesson.state_dict(), "hyper_parameters": dict(settling.lesson.hparams)}
+    torch.save(parts, part)
+    part.replace(path)
+    return path
 
 
 def _trainer(course: Course, told: Told, held_out: int) -> lightning.Trainer:
@@ -165,7 +193,8 @@ def _trainer(course: Course, told: Told, held_out: int) -> lightning.Trainer:
         gradient_clip_val=5.0,
         callbacks=[
             EMAWeightAveraging(decay=1.0 - 1.0 / (AVERAGED * course.steps + 10.0), update_starting_at_step=0),
-            ModelCheckpoint(course.output, filename="best", monitor="valid/median_px", save_last=True),
+            ModelCheckpoint(course.output, filename="best", monitor="valid/median_px", enable_version_counter=False),
+            ModelCheckpoint(course.output, filename=LAST.removesuffix(".ckpt"), enable_version_counter=False),
             told,
         ],
         logger=CSVLogger(course.output, name="", version=f"curves_{part}"),

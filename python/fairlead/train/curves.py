@@ -40,6 +40,8 @@ def draw_curves(folder: Path) -> Path | None:
             if name in curves:
                 axes.plot(*curves[name].T, label=name.split("/")[1].replace("_", " "), linewidth=1.5, marker=".")
         axes.set_yscale(scale)
+        if "valid/nees_median" in names:
+            axes.set_ylim(0.0, 2.0)  # the first epochs are far above, and nobody's concern
         axes.set_title(title, fontsize=10)
         axes.set_xlabel("steps")
         axes.grid(visible=True, alpha=0.3)

@@ -14,18 +14,27 @@ from fairlead.train.labels import Batch
 from fairlead.train.losses import (
     covariance_loss,
     distance_loss,
+    gaussian_loss,
     landmark_weight,
     mean_of,
     visibility_loss,
     whitened,
 )
-from fairlead.train.networks.catalogue import make_network
+from fairlead.train.networks.catalogue import Network, make_network
 from fairlead.train.networks.prediction import Prediction
 from fairlead.train.networks.rtmpose import RtmPose
 
 DISTANCE_WEIGHT = 0.1
 COVARIANCE_WEIGHT = 0.2
 VISIBILITY_WEIGHT = 0.5
+
+
+def channels_last(network: Network) -> Network:
+    """The same network with the memory laid out as the processor likes it."""
+    for weights in (*network.parameters(), *network.buffers()):
+        if weights.ndim == 4:
+            weights.data = weights.data.contiguous(memory_format=torch.channels_last)
+    return network
 
 
 class Lesson(lightning.LightningModule):
@@ -45,7 +54,7 @@ class Lesson(lightning.LightningModule):
         self.save_hyperparameters()
         self.name, self.landmarks, self.size = network, tuple(landmarks), size
         self.steps, self.rate, self.decay = steps, rate, decay
-        self.network = make_network(network, len(landmarks), size).to(memory_format=torch.channels_last)
+        self.network = channels_last(make_network(network, len(landmarks), size))
 
     @property
     def any_size(self) -> bool:
@@ -101,3 +110,30 @@ def share_of_rate(step: int, steps: int) -> float:
     warm = min(1.0, (step + 1) / min(500.0, 0.05 * steps + 1.0))
     done = min(1.0, step / steps)
     return warm * (0.02 + 0.98 * 0.5 * (1.0 + math.cos(math.pi * max(0.0, 2.0 * done - 1.0))))
+
+
+class Settling(lightning.LightningModule):
+    """After the course: the head for covariance and visibility alone, by a Gaussian; nothing else changes."""
+
+    def __init__(self, lesson: Lesson, steps: int, rate: float = 1e-3) -> None:
+        super().__init__()
+        self.lesson, self.steps, self.rate = lesson.requires_grad_(requires_grad=False), steps, rate
+        self.head = lesson.network.landmark.requires_grad_()
+
+    def train(self, mode: bool = True) -> "Settling":  # noqa: FBT001, FBT002
+        """The means of batch norm are not to move."""
+        del mode
+        return super().train(mode=False)
+
+    def training_step(self, batch: Batch, index: int) -> Tensor:
+        """Gaussian of the errors, and visibility."""
+        del index
+        prediction = self.lesson(batch.images)
+        likelihood = mean_of(gaussian_loss(prediction, batch), landmark_weight(batch))
+        return COVARIANCE_WEIGHT * likelihood + VISIBILITY_WEIGHT * visibility_loss(prediction, batch).mean()
+
+    def configure_optimizers(self) -> Any:
+        """Adam, half a cosine down."""
+        optimiser = torch.optim.Adam(self.head.parameters(), lr=self.rate)
+        schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, self.steps)
+        return {"optimizer": optimiser, "lr_scheduler": {"scheduler": schedule, "interval": "step"}}

@@ -41,6 +41,15 @@ def covariance_loss(prediction: Prediction, batch: Batch) -> Tensor:
     return prediction.cholesky[..., 0] + prediction.cholesky[..., 1] + 3.0 * torch.log1p(0.25 * s)
 
 
+def gaussian_loss(prediction: Prediction, batch: Batch) -> Tensor:
+    """(b, n): negative log of a Gaussian at the error of a fixed mean [nat]: log det L + s / 2.
+
+    Least where the covariance is the mean square of the errors, gross ones included.
+    """
+    s = whitened(prediction, batch).square().sum(-1)
+    return prediction.cholesky[..., 0] + prediction.cholesky[..., 1] + 0.5 * s
+
+
 def visibility_loss(prediction: Prediction, batch: Batch) -> Tensor:
     """(b, n): cross entropy of being seen [nat]."""
     seen = (batch.visibility == 2).to(prediction.visible.dtype)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """From crops to a file: a network learns, is taken up again, is exported, and says the same at run time."""
 
-import csv
 import hashlib
 import shutil
 from pathlib import Path
@@ -17,17 +16,16 @@ from fairlead.detect.onnx import Network
 from fairlead.train import course as courses
 from fairlead.train.course import Course, load_lesson, read_checkpoint
 from fairlead.train.crops import normalise, open_crops
+from fairlead.train.curves import read_curves
 from fairlead.train.lesson import Lesson, share_of_rate
 from tests.unit.train.conftest import NAMES, spotted
 
 
 def test_a_network_learns_where_spots_are(trained: Path) -> None:
     """The loss falls by more than its own spread, in the second part from where the first had ended."""
-    losses = []
-    for part in ("curves_0", "curves_1"):
-        with (trained / part / "metrics.csv").open() as stream:
-            losses += [float(row["train/loss"]) for row in csv.DictReader(stream) if row["train/loss"]]
-    assert len(losses) == 4
+    losses = read_curves(trained)["train/loss"]
+    assert losses[:, 0].tolist() == [10.0, 20.0, 30.0, 40.0]
+    losses = losses[:, 1].tolist()
     assert losses == sorted(losses, reverse=True)
     assert losses[-1] < 0.7 * losses[0]
     assert (trained / "curves.png").stat().st_size > 10_000
@@ -44,10 +42,17 @@ def test_what_is_kept_is_the_average_and_its_network(trained: Path) -> None:
     assert lesson.size == 128
 
 
+def test_settling_changes_covariance_and_visibility_alone(trained: Path) -> None:
+    kept, settled = (read_checkpoint(trained / name)["state_dict"] for name in ("last.ckpt", "settled.ckpt"))
+    changed = {name for name in kept if not torch.equal(kept[name], settled[name])}
+    assert changed == {name for name in kept if name.startswith("network.landmark.")}
+    assert (trained / "settled.ckpt").stat().st_mtime >= (trained / "last.ckpt").stat().st_mtime
+
+
 @pytest.fixture(scope="module")
 def exported(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("export") / "spots.onnx"
-    assert main(["export", str(trained / "last.ckpt"), "--target", "spots", "-o", str(path)]) == 0
+    assert main(["export", str(trained / "settled.ckpt"), "--target", "spots", "-o", str(path)]) == 0
     return path
 
 
@@ -61,7 +66,7 @@ def test_the_file_says_what_it_is(exported: Path) -> None:
 
 def test_the_run_time_sees_what_was_trained(trained: Path, exported: Path) -> None:
     """From an 8 bit crop to pixels and covariances, normalisation and order of colours included; single precision."""
-    lesson, image = load_lesson(trained / "last.ckpt"), spotted(np.random.default_rng(7))[0]
+    lesson, image = load_lesson(trained / "settled.ckpt"), spotted(np.random.default_rng(7))[0]
     with torch.inference_mode():
         wanted = lesson(torch.from_numpy(image).permute(2, 0, 1)[None])
     found = Network(exported).look(image)

@@ -5,10 +5,10 @@
 import numpy as np
 import pytest
 import torch
-from scipy.stats import multivariate_t
+from scipy.stats import multivariate_normal, multivariate_t
 
 from fairlead.train.labels import Batch
-from fairlead.train.losses import covariance_loss, landmark_weight, mean_of, visibility_loss, whitened
+from fairlead.train.losses import covariance_loss, gaussian_loss, landmark_weight, mean_of, visibility_loss, whitened
 from fairlead.train.networks.prediction import Prediction
 
 
@@ -51,6 +51,16 @@ def test_the_covariance_loss_is_a_student_t(batch: Batch, prediction: Prediction
         for L in [factor(prediction.cholesky[0, k].detach().numpy())]
     ]
     assert found[0] - found[1] == pytest.approx(oracle[0] - oracle[1], abs=1e-5)
+
+
+def test_the_gaussian_loss_is_a_gaussian(batch: Batch, prediction: Prediction) -> None:
+    found = gaussian_loss(prediction, batch).detach().numpy()[0]
+    oracle = [
+        -multivariate_normal(np.zeros(2), L @ L.T).logpdf((batch.pixels - prediction.pixels)[0, k].detach().numpy())
+        for k in range(2)
+        for L in [factor(prediction.cholesky[0, k].detach().numpy())]
+    ]
+    assert found[:2] + np.log(2.0 * np.pi) == pytest.approx(oracle, abs=1e-5)
 
 
 def test_the_covariance_loss_moves_no_pixels(batch: Batch, prediction: Prediction) -> None:

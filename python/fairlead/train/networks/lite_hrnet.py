@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lite-HRNet 18 in its wider naive form (Yu et al. 2021, table 1), the backbone of PP-TinyPose."""
 
+from collections.abc import Sequence
+from typing import cast
+
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
@@ -94,7 +97,7 @@ class Module(nn.Module):
         """One map a branch, sizes halving."""
         maps = [branch(x) for branch, x in zip(self.branches, maps, strict=True)]
         out: list[Tensor] = []
-        for i, row in enumerate(self.fuse):
+        for i, row in enumerate(cast(Sequence[Sequence[nn.Module]], self.fuse)):
             total = torch.zeros_like(maps[i])
             for j, layer in enumerate(row):
                 y = layer(maps[j])
@@ -131,7 +134,8 @@ class LiteHrNet(nn.Module):
     def forward(self, x: Tensor) -> Tensor:
         """(b, 3, h, w) -> (b, WIDTHS[0], h / 4, w / 4)."""
         maps = [self.stem(x)]
-        for enter, stage in zip(self.enter, self.stages, strict=True):
+        steps = cast(tuple[Sequence[Sequence[nn.Module]], Sequence[Sequence[nn.Module]]], (self.enter, self.stages))
+        for enter, stage in zip(*steps, strict=True):
             maps = [layer(maps[min(i, len(maps) - 1)]) for i, layer in enumerate(enter)]
             for module in stage:
                 maps = module(maps)

@@ -53,7 +53,7 @@ class Blur(nn.Module):
     def __init__(self, maps: int) -> None:
         super().__init__()
         weight = torch.exp(-0.5 * (torch.arange(-REACH, REACH + 1) / SIGMA) ** 2)
-        self.register_buffer("across", (weight / weight.sum()).reshape(1, 1, 1, -1).repeat(maps, 1, 1, 1))
+        self.across = nn.Buffer((weight / weight.sum()).reshape(1, 1, 1, -1).repeat(maps, 1, 1, 1))
 
     def forward(self, heat: Tensor) -> Tensor:
         """(b, n, h, w) -> (b, n, h, w)."""
