@@ -17,6 +17,7 @@ import tyro
 from tyro.conf import subcommand
 
 from fairlead.config import (
+    AnnotateConfig,
     Config,
     DemoConfig,
     EvaluateConfig,
@@ -29,6 +30,7 @@ from fairlead.config import (
     UsageError,
 )
 from fairlead.io.errors import InputError, one_line
+from fairlead.train.config import CalibrateConfig, ExportConfig, NetworkConfig, TrainConfig
 
 if TYPE_CHECKING:
     from fairlead.study import Replay
@@ -43,7 +45,11 @@ _Command = (
     | Annotated[SimulateConfig, subcommand("simulate")]
     | Annotated[RenderConfig, subcommand("render")]
     | Annotated[StudyConfig, subcommand("study")]
+    | Annotated[TrainConfig, subcommand("train")]
+    | Annotated[CalibrateConfig, subcommand("calibrate")]
+    | Annotated[ExportConfig, subcommand("export")]
     | Annotated[ReproduceConfig, subcommand("reproduce")]
+    | Annotated[AnnotateConfig, subcommand("annotate")]
 )
 
 
@@ -60,7 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     before = {number: signal.signal(number, _stop) for number in (signal.SIGINT, signal.SIGTERM)}
     stopped = False
     try:
-        config: Config = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
+        config: Config | NetworkConfig = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
         return _run(config)
     except (InputError, UsageError) as error:
         return _complain(str(error), 2)
@@ -95,15 +101,19 @@ def _complain(message: str, status: int) -> int:
     return status
 
 
-def _run(config: Config) -> int:
+def _run(config: Config | NetworkConfig) -> int:
     if isinstance(config, SimulateConfig):
         return _simulate(config)
     if isinstance(config, RenderConfig):
         return _render(config)
     if isinstance(config, StudyConfig):
         return _study(config)
+    if isinstance(config, NetworkConfig):
+        return _network(config)
     if isinstance(config, ReproduceConfig):
         return _reproduce(config)
+    if isinstance(config, AnnotateConfig):
+        return _annotate(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -119,6 +129,8 @@ def _run(config: Config) -> int:
     counts = f"{verb.frames} frames, {verb.frames_with_pose} with a pose ({verb.coverage:.1%})"
     if verb.report is not None:
         _show_metrics(verb.report)
+    if verb.range_bias is not None:
+        counts += ", range finder off by {:+.2f} ± {:.2f} m".format(*verb.range_bias)
     sys.stdout.write(f"{verb.output}: {counts}\n")
     if verb.coverage < config.min_coverage:
         return _complain(f"coverage {verb.coverage:.1%} is below --min-coverage {config.min_coverage:.1%}", 1)
@@ -148,6 +160,30 @@ def _render(config: RenderConfig) -> int:
     except RenderError as error:
         return _complain(str(error), 2)
     sys.stdout.write(f"{config.output}: {made} pictures made\n")
+    return 0
+
+
+def _network(config: NetworkConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.train.command import TrainingError, calibrate, export, train
+
+    verb = {TrainConfig: train, CalibrateConfig: calibrate, ExportConfig: export}[type(config)]
+    try:
+        lines = verb(**vars(config), progress=progress_bar)
+    except TrainingError as error:
+        return _complain(str(error), 2)
+    sys.stdout.write("".join(f"{line}\n" for line in lines))
+    return 0
+
+
+def _annotate(config: AnnotateConfig) -> int:
+    from fairlead.prepare import annotate
+
+    def tell(address: str) -> None:
+        sys.stdout.write(f"{config.folder}: {address} (Ctrl-C ends it; every action is saved at once)\n")
+        sys.stdout.flush()
+
+    annotate(config, tell)
     return 0
 
 

@@ -7,31 +7,13 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
-from tyro.constructors import PrimitiveConstructorSpec
 
-from fairlead.types import Autopilot
+from fairlead.sinks.autopilots import Autopilot
+from fairlead.sources.argument import Source
 
 Method = Literal["map", "window", "epnp"]
 StudyKind = Literal["noise", "angle", "grid"]
 Backend = Literal["threads", "dask"]
-
-
-def parse_source(text: str) -> Path | str:
-    """A path, or the name of something live as it is."""
-    return text if "://" in text or text.startswith("camera:") else Path(text)
-
-
-Source = Annotated[
-    Path | str,
-    PrimitiveConstructorSpec(
-        nargs=1,
-        metavar="SOURCE",
-        instance_from_str=lambda words: parse_source(words[0]),
-        is_instance=lambda value: isinstance(value, Path | str),
-        str_from_instance=lambda value: [str(value)],
-    ),
-]
-"""A path, or text for what is live: `camera:0`, `rtsp://...`."""
 
 
 class UsageError(ValueError):
@@ -57,6 +39,10 @@ class InputConfig:
     """truth.csv; the run is then evaluated as well."""
     options: Path | None = None
     """TOML file of estimator options."""
+    range: Path | None = None
+    """range.csv: readings of a range finder (method map)."""
+    attitude: Path | None = None
+    """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
     fps: float | None = None
     """Frames per second of images without stamps [1/s]."""
     topic: str | None = None
@@ -79,13 +65,13 @@ class TrackConfig(InputConfig):
 
     method: Method = "map"
     """map: this project's estimator. window: the published one. epnp: each frame alone."""
-    range: Path | None = None
-    """range.csv: readings of a range finder (method map)."""
-    attitude: Path | None = None
-    """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
     overlay: Path | None = None
     """Video (.mkv) of the images with silhouette, landmarks and their uncertainty drawn over them."""
 
+    viewer: bool = False
+    """Show it while it runs (rerun)."""
+    rrd: Path | None = None
+    """File (.rrd) of what the viewer shows, to look at later with `rerun FILE`."""
     mcap: Path | None = None
     """ROS 2 messages of every frame: /fairlead/pose, /tf, /diagnostics."""
     mavlink: str | None = None
@@ -108,6 +94,16 @@ class TrackConfig(InputConfig):
 @dataclass(frozen=True, kw_only=True)
 class RefineConfig(InputConfig):
     """Refine landmarks and poses of a whole flight in one batch."""
+
+    range_bias_sigma_m: float = 0.0
+    """What the range finder may be off by, always the same, 1 sigma [m]; above 0 it is estimated."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 <= self.range_bias_sigma_m < float("inf"):
+            raise UsageError(f"--range-bias-sigma-m: expected zero or more metres, got {self.range_bias_sigma_m}")
+        if self.range_bias_sigma_m > 0.0 and self.range is None:
+            raise UsageError("--range-bias-sigma-m: expected --range too")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,6 +194,8 @@ class RenderConfig:
     """Constant rate factor of that video: less is better and larger."""
     count: int = 1000
     """How many crops."""
+    empty: float = 0.0
+    """Share of the crops without the target, often with another ship in its place [-]."""
     size: int = 256
     """Side of a crop [px]."""
     seed: int = 0
@@ -214,8 +212,8 @@ class RenderConfig:
             raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
         counts = (self.samples, self.stride, self.count, self.jobs, self.frames, self.threads)
         least = min(count for count in counts if count is not None)
-        if not 0.0 <= self.crf <= 51.0:
-            raise UsageError(f"--crf: expected 0 to 51, got {self.crf}")
+        if not (0.0 <= self.crf <= 51.0 and 0.0 <= self.empty <= 1.0):
+            raise UsageError(f"render: expected --crf 0 to 51, got {self.crf}, --empty 0 to 1, got {self.empty}")
         if least < 1 or not 32 <= self.size <= 2048 or min(self.seed, self.first) < 0:
             raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed, --first not below 0")
 
@@ -292,6 +290,38 @@ class ReproduceConfig:
                 raise UsageError(f"--{name}: expected a whole number >= 1, got {value}")
 
 
+@dataclass(frozen=True, kw_only=True)
+class AnnotateConfig:
+    """A page in the browser, of this machine alone: landmarks on a mesh, marks in frames, truth poses."""
+
+    folder: Positional[Path]
+    """What is annotated: mesh, camera.yaml, images/ or rgb/, target.toml if there is one; the labels go there, too."""
+    mesh: Path | None = None
+    """PLY, OBJ, STL or glTF, if there is not just one in the folder."""
+    mesh_scale: float = 1.0
+    """Metres in a unit of the mesh: 0.001 for one in millimetres."""
+    target: Path | None = None
+    """Landmarks to begin with; target.toml of the folder if not given."""
+    camera: Path | None = None
+    """Calibration; camera.yaml of the folder if not given."""
+    images: Path | None = None
+    """Folder of the frames; images/, rgb/ or the folder itself if not given."""
+    fps: float | None = None
+    """Frames per second where the images carry no stamps [1/s]; 1 if not given."""
+    port: int = 8090
+    """Of the page; 0: any that is free."""
+    show: bool = True
+    """Open the browser."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.mesh_scale < 1e9:
+            raise UsageError(f"--mesh-scale: expected metres in a unit of the mesh, got {self.mesh_scale}")
+        if self.fps is not None and not 0.0 < self.fps < 1e6:
+            raise UsageError(f"--fps: expected a positive number of frames per second, got {self.fps}")
+        if not 0 <= self.port < 65536:
+            raise UsageError(f"--port: expected 0 to 65535, got {self.port}")
+
+
 Config = (
     ReproduceConfig
     | TrackConfig
@@ -301,4 +331,5 @@ Config = (
     | RenderConfig
     | StudyConfig
     | DemoConfig
+    | AnnotateConfig
 )

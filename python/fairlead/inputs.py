@@ -3,6 +3,7 @@
 """Where the views of a run come from: source and detector, and the camera that they belong to."""
 
 import itertools
+import logging
 import math
 import time
 from collections.abc import Iterator
@@ -10,18 +11,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fairlead.config import InputConfig, UsageError
 from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
 from fairlead.sources.live import LiveImages
 from fairlead.sources.opening import KINDS, is_bag, open_images
-from fairlead.sources.source import Image, ImageSource, ViewSource
+from fairlead.sources.source import Image, ImageFrame, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
 from fairlead.types import Camera, Estimate, Target, View
 
 if TYPE_CHECKING:
     from fairlead.detect import Detector
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,11 +40,15 @@ class Seen:
 
 
 class DetectedViews:
-    """The views that a detector finds in a sequence of images; each is looked at when it is asked for."""
+    """The views that a detector finds in a sequence of images; each is looked at when it is asked for.
+
+    An image that is the one before it, bit by bit, is a camera that froze: nothing is seen in it.
+    """
 
     def __init__(self, images: ImageSource, detector: "Detector") -> None:
         self._images = images
         self._detector = detector
+        self._frozen = FrozenCamera()
 
     def __iter__(self) -> Iterator[View]:
         return (seen.view for seen in self.seen())
@@ -49,7 +58,7 @@ class DetectedViews:
         start_s = time.perf_counter()
         for image in self._images:
             read_s = time.perf_counter()
-            view = self._detector.detect(image.image, image.frame, image.stamp_ns)
+            view = nothing_seen(image) if self._frozen.is_repeated(image) else self._detect(image)
             done_s = time.perf_counter()
             yield Seen(
                 view=view, image=image.image, read_ms=1e3 * (read_s - start_s), detect_ms=1e3 * (done_s - read_s)
@@ -59,6 +68,9 @@ class DetectedViews:
     def follow(self, estimate: Estimate) -> None:
         """Tell the detector where the estimator sees the target, before the next image is looked at."""
         self._detector.follow(estimate)
+
+    def _detect(self, image: ImageFrame) -> View:
+        return self._detector.detect(image.image, image.frame, image.stamp_ns)
 
     def count(self) -> int:
         """Number of images; 0 where nobody knows."""
@@ -78,6 +90,37 @@ class DetectedViews:
         """Let go of a camera or a stream."""
         if isinstance(self._images, LiveImages):
             self._images.close()
+
+
+class FrozenCamera:
+    """Tells images that repeat the one before: no sensor gives the same noise twice."""
+
+    def __init__(self) -> None:
+        self._last: Image | None = None
+        self._warned = False
+
+    def is_repeated(self, image: ImageFrame) -> bool:
+        """Whether this is the image before it; the first time there is a warning."""
+        last, self._last = self._last, image.image
+        if last is None or last.shape != image.image.shape or not (last[::37] == image.image[::37]).all():
+            return False
+        if not (last == image.image).all():
+            return False
+        if not self._warned:
+            self._warned = True
+            _log.warning("%s: frame %d repeats the one before it: the camera froze", image.path, image.frame)
+        return True
+
+
+def nothing_seen(image: ImageFrame) -> View:
+    """A view without observations."""
+    return View(
+        frame=image.frame,
+        stamp_ns=image.stamp_ns,
+        landmarks=(),
+        pixels=np.empty((0, 2)),
+        covariances=np.empty((0, 2, 2)),
+    )
 
 
 def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSource:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from fairlead.config import TrackConfig, UsageError
+from fairlead.io.mesh import Mesh, load_mesh
 from fairlead.io.poses import read_truth
 from fairlead.sinks.sink import OutcomeSink
 from fairlead.types import Camera, PoseEstimator, Target
@@ -17,6 +18,11 @@ def open_outputs(
     """Each sink as soon as it is open. Raises InputError, UsageError, OSError."""
     if config.overlay is not None:
         yield _overlay(config.overlay, config.truth, target, camera, estimator)
+    if config.viewer or config.rrd is not None:
+        from fairlead.sinks.viewer import ViewerSink
+
+        mesh = _mesh(target)
+        yield ViewerSink(target, camera, estimator, mesh=mesh, rrd=config.rrd, live=config.viewer)
     if config.mcap is not None:
         from fairlead.sinks.ros.mcap import McapSink
 
@@ -31,7 +37,8 @@ def open_outputs(
 
 def check_outputs(config: TrackConfig, inputs: list[Path]) -> None:
     """Raises UsageError where a sink would write over something that is read, or has another kind of name."""
-    for option, path, suffix in (("--overlay", config.overlay, ".mkv"), ("--mcap", config.mcap, ".mcap")):
+    files = (("--overlay", config.overlay, ".mkv"), ("--mcap", config.mcap, ".mcap"), ("--rrd", config.rrd, ".rrd"))
+    for option, path, suffix in files:
         if path is None:
             continue
         if path.suffix != suffix:
@@ -64,10 +71,13 @@ def _mavlink(config: TrackConfig, address: str, target: Target) -> OutcomeSink:
     return MavlinkSink(link, target, mount, options)
 
 
+def _mesh(target: Target) -> Mesh | None:
+    return None if target.mesh is None else load_mesh(target.mesh)
+
+
 def _overlay(path: Path, truth: Path | None, target: Target, camera: Camera, estimator: PoseEstimator) -> OutcomeSink:
-    from fairlead.io.mesh import load_mesh
     from fairlead.sinks.overlay import OverlayPainter, OverlaySink
 
-    mesh = None if target.mesh is None else load_mesh(target.mesh)
+    mesh = _mesh(target)
     poses = {} if truth is None else {each.frame: each.T_camera_target for each in read_truth(truth)}
     return OverlaySink(path, OverlayPainter(target, camera, estimator, mesh=mesh, truth=poses))

@@ -4,7 +4,9 @@
 
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
@@ -40,6 +42,8 @@ class RunSummary:
     frames_with_pose: int
     report: Path | None
     """Where truth was given."""
+    range_bias: tuple[float, float] | None = None
+    """Constant error of the range finder and its standard deviation [m], where it was looked for."""
 
     @property
     def coverage(self) -> float:
@@ -87,6 +91,7 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
     """Solve all views of a flight at once. Errors as `track`."""
     target, camera = _load(config)
     source = open_views(config, target, camera)
+    readings = sensor_readings(config, target)
     options = tracker_options(config.options)
     views_seen = timed_views(source, config.source)
     with RunFolder(config.output, _record("refine", config, options), target, camera) as folder:
@@ -99,22 +104,22 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
                 views.append(seen.view)
                 timings.append(_timing(seen, float("nan")))
                 advance(source.work(seen.view))
-        refinement = _solve(config, views, target, camera, options)
+        batch = partial(refine_batch, views, target, camera, options, range_bias_sigma_m=config.range_bias_sigma_m)
+        refinement = _solve(config, partial(batch, ranges=readings.ranges, attitudes=readings.attitudes))
         for estimate, timing in zip(refinement.estimates, timings, strict=True):
             folder.write(estimate, timing)
         folder.save_model(refinement.model)
-    return _finish(config, folder.record)
+    bias = (refinement.range_bias_m, refinement.range_bias_sigma_m) if config.range_bias_sigma_m > 0.0 else None
+    return replace(_finish(config, folder.record), range_bias=bias)
 
 
-def _solve(
-    config: RefineConfig, views: list[View], target: Target, camera: Camera, options: TrackerOptions
-) -> Refinement:
+def _solve(config: RefineConfig, batch: Callable[[], Refinement]) -> Refinement:
     """The batch, in a thread of its own, so that a signal need not wait for its end."""
     answers: list[Refinement | Exception] = []
 
     def solve() -> None:
         try:
-            answers.append(refine_batch(views, target, camera, options))
+            answers.append(batch())
         except Exception as error:  # raised again below, in the thread that asked
             answers.append(error)
 
@@ -138,11 +143,12 @@ def evaluate(config: EvaluateConfig) -> Path:
     return evaluate_run(config.run, config.truth, target_true=config.target_true, output=config.output)
 
 
-def sensor_readings(config: TrackConfig, target: Target) -> SensorReadings:
+def sensor_readings(config: InputConfig, target: Target) -> SensorReadings:
     """What other sensors said. Raises InputError, UsageError."""
+    method = config.method if isinstance(config, TrackConfig) else "map"
     for path, name in ((config.range, "--range"), (config.attitude, "--attitude")):
-        if path is not None and config.method != "map":
-            raise UsageError(f"{name}: method {config.method} has no use for it")
+        if path is not None and method != "map":
+            raise UsageError(f"{name}: method {method} has no use for it")
     readings = SensorReadings(
         ranges=[] if config.range is None else read_ranges(config.range),
         attitudes=[] if config.attitude is None else read_attitudes(config.attitude),
@@ -210,10 +216,11 @@ def _input_paths(config: InputConfig) -> dict[str, Path]:
     """Every file that was named, by its role."""
     paths = {"target": config.target}
     more = {"camera": config.camera, "options": config.options, "truth": config.truth}
+    more |= {"range": config.range, "attitude": config.attitude}
     if config.detector is not None and config.detector.endswith(".onnx"):
         more["detector"] = Path(config.detector)
     if isinstance(config, TrackConfig):
-        more |= {"range": config.range, "attitude": config.attitude, "mount": config.mount}
+        more["mount"] = config.mount
     if isinstance(config.source, Path):
         paths = {"source": config.source} | paths
     return paths | {role: path for role, path in more.items() if path is not None}

@@ -17,6 +17,8 @@ from fairlead.opencv.drawing import (
     fill_triangles,
     resample,
 )
+from fairlead.opencv.filters import warp_affine
+from fairlead.opencv.flow import carry_points
 from fairlead.opencv.images import GreyImage, Image, decode_image, grey, image_size, read_image
 from fairlead.opencv.markers import (
     FoundCorners,
@@ -38,6 +40,7 @@ __all__ = [
     "Image",
     "Line",
     "PnpSolution",
+    "carry_points",
     "charuco_corners",
     "chessboard_corners",
     "contours",
@@ -61,4 +64,5 @@ __all__ = [
     "refine",
     "resample",
     "sqpnp",
+    "warp_affine",
 ]

@@ -52,13 +52,10 @@ def bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0) -> Bou
 
 def causal_bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0) -> Bound:
     """Of each frame with the views up to it: what an online estimator can know."""
-    last: list[np.ndarray] = []
-    X = flight.told.covariance
-    for k in range(1, len(flight.views) + 1):
-        one = bound(_first(flight, k), factor, inefficiency)
-        last.append(one.pose_covariances[-1])
-        X = one.X_covariance
-    return Bound(pose_covariances=np.array(last), X_covariance=X)
+    each = [bound(_first(flight, k), factor, inefficiency) for k in range(1, len(flight.views) + 1)]
+    return Bound(
+        pose_covariances=np.array([one.pose_covariances[-1] for one in each]), X_covariance=each[-1].X_covariance
+    )
 
 
 def _solve(flight: Flight, P0: np.ndarray, factor: float) -> tuple[np.ndarray, np.ndarray]:

@@ -24,6 +24,8 @@ class Column:
     """Significant ones."""
     interval: bool = False
     """Show the 95 % interval of `<key>_low95` and `<key>_high95` behind the number."""
+    plain: bool = False
+    """A setting and not a measurement: as short as it is."""
     percent: bool = False
     """The number is a share: show it times 100."""
     mark: str = ""
@@ -94,6 +96,8 @@ def _number(value: Cell, column: Column) -> str:
     if isinstance(value, str):
         return value
     scaled = 100.0 * value if column.percent else value
+    if column.plain:
+        return f"{scaled:g}"
     return f"{scaled}" if isinstance(scaled, int) else significant(scaled, column.digits)
 
 

@@ -91,8 +91,10 @@ def in_order(sequence: Sequence, views: Iterable[View]) -> list[View]:
         if near < len(views) and abs(views[near].stamp_ns - pose.stamp_ns) <= PAIRED_NS:
             found.append(replace(views[near], frame=pose.frame, stamp_ns=pose.stamp_ns))
         else:
-            nothing = {"landmarks": (), "pixels": np.empty((0, 2)), "covariances": np.empty((0, 2, 2))}
-            found.append(View(frame=pose.frame, stamp_ns=pose.stamp_ns, **nothing))
+            pixels, covariances = np.empty((0, 2)), np.empty((0, 2, 2))
+            found.append(
+                View(frame=pose.frame, stamp_ns=pose.stamp_ns, landmarks=(), pixels=pixels, covariances=covariances)
+            )
     return found
 
 

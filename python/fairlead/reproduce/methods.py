@@ -156,10 +156,10 @@ def _track(
 def _true_model(flight: Flight) -> Track:
     """PnP on the true landmarks with a robust loss, started at the true pose, docs/study.md section 3."""
     k, n = flight.observed.pixels.shape[:2]
-    T, S, _, _, counts = core_flights(flight, np.zeros((3 * n, 3 * n))).solve(
+    poses, S, _, _, counts = core_flights(flight, np.zeros((3 * n, 3 * n))).solve(
         "true_model", FreeOptions().to_core(), TrackerOptions().to_core(), 1
     )
-    T = T.reshape(k, 4, 4)
+    T = poses.reshape(k, 4, 4)
     known = np.isfinite(T).all(axis=(1, 2))
     return Track(
         T_camera_target=T,
@@ -175,7 +175,7 @@ def _true_model(flight: Flight) -> Track:
 def core_flights(flight: Flight, P0: np.ndarray, covariances: np.ndarray | None = None) -> _core.Flights:
     """The flight in the core's form; `covariances`: instead of the told ones, (k, n, 2, 2)."""
     S = flight.observed.covariances if covariances is None else covariances
-    usable = np.isfinite(flight.observed.pixels).all(axis=2) & np.isfinite(S).all(axis=(2, 3))
+    usable = np.asarray(np.isfinite(flight.observed.pixels).all(axis=2) & np.isfinite(S).all(axis=(2, 3)))
     return _core.Flights(
         core_camera(plain(flight.camera)),
         np.ascontiguousarray(flight.X_true[None]),
@@ -195,5 +195,5 @@ def model_error_m(X: np.ndarray, X_true: np.ndarray, *, aligned: bool = False) -
         similarity = model_alignment(X, X_true, "sim3")
         if similarity is None:
             return float("nan")
-        X = similarity.apply(X)
+        return float(np.linalg.norm(similarity.apply(X) - X_true, axis=1).mean())
     return float(np.linalg.norm(X - X_true, axis=1).mean())

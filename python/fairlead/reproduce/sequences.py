@@ -134,7 +134,8 @@ def _projected(true: Target, camera: Camera, pose: TruthPose) -> SeenTruth:
     """Where truth puts the landmarks; which of them are hidden is not known."""
     pixels = project(camera, transform(pose.T_camera_target, true.positions))
     with np.errstate(invalid="ignore"):
-        inside = ((pixels >= -0.5) & (pixels <= np.array([camera.width, camera.height]) - 0.5)).all(axis=1)
+        within = (pixels >= -0.5) & (pixels <= np.array([camera.width, camera.height]) - 0.5)
+    inside = np.asarray(within.all(axis=1))
     return SeenTruth(pixels=pixels, visible=inside, outside=~inside)
 
 

@@ -49,7 +49,7 @@ def hard_flight(target: Target, camera: Camera, hardship: Hardship, seed: int) -
         pixels=pixels,
         covariances=covariances.copy(),
         errors=pixels - exact,
-        visible=np.isfinite(pixels).all(axis=2),
+        visible=np.asarray(np.isfinite(pixels).all(axis=2)),
     )
     told = replace(target, positions=X0, covariance=model.told_covariance(X0), mesh=None, touchdown=None, distances=())
     return Flight(
@@ -74,7 +74,7 @@ def _hidden(X: np.ndarray, share: float) -> np.ndarray:
 def _views(landmarks: Sequence[str], observed: Observed) -> tuple[View, ...]:
     views: list[View] = []
     for k, stamp_ns in enumerate(observed.stamps_ns.tolist()):
-        seen = np.flatnonzero(observed.visible[k])
+        seen = np.flatnonzero(observed.visible[k]).tolist()
         views.append(
             View(
                 frame=k,

@@ -79,6 +79,7 @@ def _table_record(table: Table) -> dict[str, Any]:
         "name": table.name,
         "title": table.title,
         "note": table.note,
+        "intervals": [column.interval for column in table.columns],
         "head": [column.title for column in table.columns],
         "cells": [[shown(column, row) for column in table.columns] for row in table.rows],
         "missed": [[missed(column, row) for column in table.columns] for row in table.rows],
@@ -110,9 +111,11 @@ def read_sections(folder: Path, order: Sequence[str]) -> list[dict[str, Any]]:
         if path.is_file():
             try:
                 record = json.loads(path.read_text(encoding="utf-8"))
-                record["name"], record["tables"], record["pictures"]
-            except (ValueError, KeyError, TypeError) as error:
+                missing = {"name", "title", "facts", "tables", "pictures"} - set(record)
+            except (ValueError, TypeError) as error:
                 raise InputError(path, f"no record of a section: {error}") from error
+            if missing:
+                raise InputError(path, f"no record of a section: it has no {min(missing)}")
             records.append(record)
     return records
 

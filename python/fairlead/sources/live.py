@@ -13,6 +13,8 @@ QUEUE_LENGTH = 2
 """Images that wait at most; older ones are dropped."""
 SILENCE_LIMIT_S = 5.0
 """Without an image for so long a live source has ended."""
+FIRST_LIMIT_S = 15.0
+"""Until the first one: cameras and streams take their time to open."""
 _POLL_S = 0.2
 _GOODBYE_S = 2.0
 
@@ -35,6 +37,7 @@ class LiveImages:
         self._ready = threading.Condition()
         self._closing = threading.Event()
         self._thread: threading.Thread | None = None
+        self._started = False
         self._ended = False
         self._error: Exception | None = None
 
@@ -61,16 +64,18 @@ class LiveImages:
 
     def _next(self) -> ImageFrame | None:
         waited_s = 0.0
+        limit_s = self._limit_s if self._started else max(self._limit_s, FIRST_LIMIT_S)
         with self._ready:
             while not self._queue:
                 if self._error is not None:
                     raise self._error
                 if self._ended:
                     return None
-                if waited_s >= self._limit_s:
-                    raise InputError(self._name, f"no image for {self._limit_s:g} s")
+                if waited_s >= limit_s:
+                    raise InputError(self._name, f"no image for {limit_s:g} s")
                 if not self._ready.wait(_POLL_S):
                     waited_s += _POLL_S
+            self._started = True
             return self._queue.popleft()
 
     def _run(self) -> None:

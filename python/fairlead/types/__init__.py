@@ -7,7 +7,6 @@ Every array is copied to float64 and set read-only; a record is never changed. C
 
 from fairlead.types.arrays import (
     DISTORTION_SIZE,
-    Autopilot,
     CameraModel,
     Distortion,
     Matrix3,
@@ -53,7 +52,6 @@ __all__ = [
     "DISTORTION_SIZE",
     "RIGID_TOLERANCE",
     "AttitudeReading",
-    "Autopilot",
     "Camera",
     "CameraModel",
     "Distortion",

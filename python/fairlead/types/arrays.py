@@ -30,7 +30,6 @@ ModelCovariance = Float64[np.ndarray, "m m"]
 
 CameraModel = Literal["pinhole", "plumb_bob", "rational_polynomial", "equidistant"]
 Status = Literal["acquiring", "tracking", "coasting", "lost"]
-Autopilot = Literal["px4", "ardupilot"]
 MotionKind = Literal["range", "target", "world", "none"]
 
 DISTORTION_SIZE: dict[CameraModel, int] = {"pinhole": 0, "plumb_bob": 5, "rational_polynomial": 8, "equidistant": 4}

@@ -27,13 +27,20 @@ class Picture:
     """Blue, green, red."""
 
 
+_LIVE = {"fflags": "nobuffer", "flags": "low_delay", "analyzeduration": "500000", "probesize": "200000"}
+"""Begin at once, keep nothing back."""
+
+
 def open_video(source: Path | str, *, named: str | None = None) -> Any:
-    """Open a file or a network address; `named` stands for it in messages. Raises InputError."""
+    """Open a file, or a network address if it is text; `named` stands for it in messages. Raises InputError."""
     import av
     from av.error import FFmpegError
 
     name = named or str(source)
-    options = {"rtsp_transport": "tcp"} if str(source).startswith("rtsp") else {}
+    live = isinstance(source, str)
+    options = _LIVE if live else {}
+    if live and source.startswith("rtsp"):
+        options = options | {"rtsp_transport": "tcp"}
     try:
         container = av.open(str(source), options=options, timeout=(OPEN_TIMEOUT_S, READ_TIMEOUT_S))
     except (FFmpegError, OSError, ValueError) as error:
@@ -41,7 +48,8 @@ def open_video(source: Path | str, *, named: str | None = None) -> Any:
     if not container.streams.video:
         container.close()
         raise InputError(name, "holds no video")
-    container.streams.video[0].thread_type = "AUTO"
+    # Threads over frames hold back as many images as there are threads.
+    container.streams.video[0].thread_type = "SLICE" if live else "AUTO"
     return container
 
 

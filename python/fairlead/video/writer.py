@@ -18,7 +18,8 @@ _ENCODERS: dict[Codec, tuple[str, str, dict[str, str]]] = {
     "h264": ("libx264", "yuv420p", {"crf": "18", "preset": "veryfast", "tune": "zerolatency"}),
     "ffv1": ("ffv1", "bgr0", {"level": "3", "g": "1"}),
 }
-_MUXER = {"flush_packets": "1", "cluster_time_limit": "200"}
+_MUXER = {"flush_packets": "1", "cluster_time_limit": "1"}
+"""A cluster an image: what is not in a finished cluster is lost when the process is killed."""
 
 
 class VideoWriter:
@@ -27,6 +28,7 @@ class VideoWriter:
     def __init__(self, path: Path, *, codec: Codec = "h264") -> None:
         import av
 
+        path.open("wb").close()  # an error that names the file
         self._path = path
         self._container: Any = av.open(str(path), "w", format="matroska", options=_MUXER)
         self._codec: Codec = codec
@@ -57,8 +59,11 @@ class VideoWriter:
         return stream
 
     def _mux(self, frame: Any) -> None:
-        for packet in self._stream.encode(frame):
-            self._container.mux(packet)
+        try:
+            for packet in self._stream.encode(frame):
+                self._container.mux(packet)
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(self._path)) from error
 
     def close(self) -> None:
         """Finish the file; safe to call twice."""

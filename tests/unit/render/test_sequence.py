@@ -242,6 +242,22 @@ def test_crops_are_labelled(name: str, graphics: None, repository: Path, shipped
     assert np.std([picture.mean() for picture in pictures]) > 1.0
 
 
+def test_crops_without_the_target_label_nothing(graphics: None, repository: Path, tmp_path: Path) -> None:
+    target = str(repository / "data" / "frigate" / "target.toml")
+    arguments = ["render", "crops", "--target", target, "--count", "4", "--size", "64"]
+    for share in ("0", "1"):
+        assert main([*arguments, "--empty", share, "-o", str(tmp_path / share)]) == 0
+    (_, with_it), (_, without) = (read_coco(tmp_path / share / "annotations.json") for share in ("0", "1"))
+    assert all(max(label.visibility) > 0 for label in with_it)
+    for label in without:
+        assert set(label.visibility) == {0}
+        assert not label.pixels.any()
+        assert geometry.transform(label.T_camera_target, np.zeros((1, 3)))[0, 2] < 0.0
+    for label in with_it:
+        there, gone = (read_image(tmp_path / share / label.file_name).astype(float) for share in "01")
+        assert np.abs(there - gone).max() > 20.0
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -117,6 +117,7 @@ def test_the_inset_stays_off_the_target_and_goes_when_it_is_large() -> None:
         over = min(x + 30, window.left + window.side) - max(x - 30, window.left)
         down = min(140.0, window.top + window.side) - max(100.0, window.top)
         assert min(over, down) <= 0.0
+        assert window.left + window.side > 500 or window.top > 300, "the caption's corner"
         assert 0 <= window.left <= 1000 - window.side
         assert 0 <= window.top <= 800 - window.side
     for _ in range(40):

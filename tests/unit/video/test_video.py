@@ -53,6 +53,11 @@ def readable(path: Path) -> list[int]:
     return frames
 
 
+def write_all(writer: VideoWriter, clip: Clip) -> None:
+    for image, stamp_ns in zip(clip.images, clip.stamps_ns, strict=True):
+        writer.write(image, stamp_ns)
+
+
 def sized(width: int, height: int) -> Camera:
     return replace(CAMERA, width=width, height=height)
 
@@ -90,6 +95,18 @@ def test_another_size_is_an_error(clip: Clip, tmp_path: Path) -> None:
     path = clip.first(1).write_video(tmp_path / "v.mkv")
     with pytest.raises(InputError, match="expected 640 x 480 as the camera has, got images of 320 x 240"):
         VideoSource(path, sized(640, 480))
+
+
+def test_a_place_that_is_not_there_and_a_full_disk_are_os_errors(clip: Clip, tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"none/v\.mkv"):
+        VideoWriter(tmp_path / "none" / "v.mkv")
+    if Path("/dev/full").exists():
+        (tmp_path / "full.mkv").symlink_to("/dev/full")
+        writer = VideoWriter(tmp_path / "full.mkv", codec="ffv1")
+        with pytest.raises(OSError, match=r"No space left on device.*full\.mkv"):
+            write_all(writer, clip)
+        with contextlib.suppress(OSError):
+            writer.close()
 
 
 def test_passwords_are_not_shown() -> None:

@@ -42,7 +42,7 @@ def _one_covariance(flight: Flight) -> Flight:
         dataclasses.replace(view, covariances=np.tile(variance * np.eye(2), (len(view.landmarks), 1, 1)))
         for view in flight.views
     )
-    known = np.isfinite(S).all(axis=(2, 3))
+    known = np.asarray(np.isfinite(S).all(axis=(2, 3)))
     observed = dataclasses.replace(
         flight.observed, covariances=np.where(known[..., None, None], variance * np.eye(2), np.nan)
     )

@@ -29,7 +29,7 @@ AXES: tuple[tuple[str, str, tuple[float, ...], float], ...] = (
 )
 """Field of Hardship, label, levels, and what they are multiplied by where people read them."""
 _COLUMNS = (
-    Column(key="level", title="level"),
+    Column(key="level", title="level", plain=True),
     Column(key="label", title="method"),
     Column(key="rotation_all_deg", title="rotation [deg]"),
     Column(key="translation_all_m", title="translation [m]", interval=True),
@@ -94,12 +94,12 @@ def _rows(
             scores[method].append(score(found[method], flight))
             tracks[method].append((found[method], flight.T_true))
         advance(1)
-    return [
-        {"level": scale * level, "method": method, "label": LABELS[method]}
-        | summarise(scores[method])
-        | {"truthful": truthful(tracks[method]), "status": statuses([track for track, _ in tracks[method]])}
-        for method in METHODS
-    ]
+    rows: list[dict[str, Cell]] = []
+    for method in METHODS:
+        head: dict[str, Cell] = {"level": scale * level, "method": method, "label": LABELS[method]}
+        words: dict[str, Cell] = {"status": statuses([track for track, _ in tracks[method]])}
+        rows.append(head | summarise(scores[method]) | {"truthful": truthful(tracks[method])} | words)
+    return rows
 
 
 def truthful(tracks: Rows[tuple[Track, np.ndarray]]) -> float:

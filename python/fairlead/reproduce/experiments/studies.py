@@ -100,7 +100,7 @@ def _tables(name: str, axis: str, lines: Rows[Line], settings: Rows[Setting], x:
     found = {(line.setting.name, line.method): line for line in lines}
     tables: list[Table] = []
     for error, short, title in _ERRORS:
-        columns = [Column(key="x", title=axis), *(Column(key=each, title=_LABELS[each]) for each in _SHOWN)]
+        columns = [Column(key="x", title=axis, plain=True), *(Column(key=each, title=_LABELS[each]) for each in _SHOWN)]
         columns.append(Column(key="map_vs_epnp", title="map / EPnP's", interval=True))
         columns.append(Column(key="map_vs_window", title="map / window's", interval=True, mark="missed"))
         rows: list[dict[str, Cell]] = []

@@ -20,7 +20,7 @@ from fairlead.reproduce.work import job_of, run_job
 SEEDS = 3
 _COLUMNS = (
     Column(key="kind", title="weather"),
-    Column(key="strength", title="strength"),
+    Column(key="strength", title="strength", plain=True),
     Column(key="network", title="network"),
     Column(key="mean_px", title="landmark error [px]"),
     Column(key="p95_px", title="95 % [px]"),

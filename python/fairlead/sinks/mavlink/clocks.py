@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The autopilot's clock and this machine's, docs/mavlink.md eq. (6)."""
+"""The autopilot's clock and this machine's, docs/mavlink.md eq. (4)."""
 
 from collections import deque
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""An estimate in the frames that autopilots accept, docs/mavlink.md eq. (2)-(5)."""
+"""An estimate in the frames that autopilots accept, docs/mavlink.md eq. (2)-(6)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +9,7 @@ import numpy as np
 
 from fairlead.geometry import point_covariance, quat_xyzw_from_matrix
 from fairlead.io.mount import Mount
+from fairlead.sinks.autopilots import Autopilot
 from fairlead.sinks.mavlink.dialect import (
     FRAME_BODY_FRD,
     FRAME_LOCAL_NED,
@@ -19,7 +20,7 @@ from fairlead.sinks.mavlink.dialect import (
     target_relative,
 )
 from fairlead.sinks.mavlink.vehicle import VehicleState, camera_in_body
-from fairlead.types import Autopilot, Estimate, Matrix3, Matrix4, Vector3
+from fairlead.types import Estimate, Matrix3, Matrix4, Vector3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,7 +63,7 @@ def quat_wxyz(R: Matrix3) -> list[float]:
 
 
 def landing_target(sighting: Sighting, autopilot: Autopilot) -> Any:
-    """LANDING_TARGET in the one frame that this autopilot takes; None where its frame is not known yet, eq. (4)."""
+    """LANDING_TARGET in the one frame that this autopilot takes; None where its frame is not known yet, eq. (5)."""
     frame, p, R_frame_target = FRAME_BODY_FRD, sighting.p_body, sighting.R_body_target
     distance = float(np.linalg.norm(p))
     if autopilot == "px4":
@@ -88,7 +89,7 @@ def landing_target(sighting: Sighting, autopilot: Autopilot) -> Any:
 
 
 def relative_target(sighting: Sighting) -> Any:
-    """TARGET_RELATIVE: in NED from the vehicle where its attitude is known, else in body axes, eq. (5)."""
+    """TARGET_RELATIVE: in NED from the vehicle where its attitude is known, else in body axes, eq. (6)."""
     R_frame_body, frame, quat_sensor = np.eye(3), OBSERVED_BODY_FRD, [0.0] * 4
     if sighting.state.R_ned_body is not None:
         R_frame_body, frame, quat_sensor = sighting.state.R_ned_body, OBSERVED_OFFSET_NED, [1.0, 0.0, 0.0, 0.0]

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from fairlead.io.mount import Mount
+from fairlead.sinks.autopilots import Autopilot
 from fairlead.sinks.mavlink.link import Link
 from fairlead.sinks.mavlink.report import landing_target, relative_target, sight
 from fairlead.sinks.mavlink.vehicle import UNKNOWN
 from fairlead.sinks.sink import Outcome
-from fairlead.types import Autopilot, Estimate, Target
+from fairlead.types import Estimate, Target
 
 FRESH_NS = 200_000_000
 """Older news is no news; without fresh news the target is lost."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the vehicle was and how it was turned when an image was taken, docs/mavlink.md eq. (2)-(6)."""
+"""Where the vehicle was and how it was turned when an image was taken, docs/mavlink.md eq. (2)-(4)."""
 
 from bisect import bisect_right
 from collections.abc import Callable

@@ -11,7 +11,9 @@ from fairlead.types import Pixels
 SHARE = 0.46
 """Side of the inset over the shorter side of the image [-]."""
 _MARGIN = 1.35
-_MIN_ZOOM = 1.5
+_MIN_ZOOM = 1.8
+_COME_BACK = 1.15
+"""An inset that went comes back at so much more than _MIN_ZOOM, so that it does not flicker."""
 _FOLLOW = 0.2
 
 
@@ -36,13 +38,14 @@ class Window:
 
 
 class Follower:
-    """Follows the target smoothly; changes the corner only when the target comes under the inset."""
+    """Follows the target smoothly; changes the corner, never to that of the caption, when the target comes under it."""
 
     def __init__(self, width: int, height: int) -> None:
         self._size = np.array([float(width), float(height)])
         self._side = round(SHARE * min(width, height))
         self._corner = np.array([1.0, 0.0])
         self._state: np.ndarray | None = None
+        self._open = True
 
     def follow(self, low: np.ndarray, high: np.ndarray) -> Window | None:
         """The window for a target that reaches from low to high [px]; None where it is large already."""
@@ -51,7 +54,8 @@ class Follower:
             self._state = wanted
         self._state = self._state + _FOLLOW * (wanted - self._state)
         shown = float(np.exp(self._state[2]))
-        if self._side < _MIN_ZOOM * shown:
+        self._open = self._side >= _MIN_ZOOM * shown * (1.0 if self._open else _COME_BACK)
+        if not self._open:
             return None
         self._choose(low, high)
         left, top = self._place(self._corner)
@@ -70,5 +74,5 @@ class Follower:
             return float(np.prod(np.clip(overlap, 0.0, None)))
 
         if covered(self._corner) > 0.0:
-            corners = [np.array(each, dtype=np.float64) for each in ((1, 0), (1, 1), (0, 1), (0, 0))]
+            corners = [np.array(each, dtype=np.float64) for each in ((1, 0), (1, 1), (0, 1))]
             self._corner = min(corners, key=covered)
