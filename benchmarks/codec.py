@@ -24,6 +24,7 @@ from fairlead.detect.onnx import Network
 from fairlead.detect.window import window_about
 from fairlead.io.csv_lines import read_csv
 from fairlead.opencv import grey, read_image
+from fairlead.render.flights import RATE_HZ
 from fairlead.render.frame_files import linear_path, load_linear, picture_path
 from fairlead.render.truth_tables import COLUMNS
 from fairlead.types import Pixels
@@ -56,6 +57,19 @@ class Landmarks:
     names: tuple[str, ...]
     pixels: Pixels
     visible: Bool[np.ndarray, "n"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Originals:
+    """Pictures as they were rendered."""
+
+    images: Sequence[BgrImage]
+    landmarks: Sequence[Landmarks]
+
+    @property
+    def exact(self) -> Pixels:
+        """Of all visible landmarks, picture after picture."""
+        return np.concatenate([each.pixels[each.visible] for each in self.landmarks])
 
 
 def true_landmarks(scene: Path) -> dict[int, Landmarks]:
@@ -144,36 +158,41 @@ def report(name: str, moved: Sequence[np.ndarray] | Pixels) -> str:
     return f"| {name} | {len(moved)} | {rms:.3f} | {quantiles} |"
 
 
+def compare(
+    name: str, originals: Originals, images: Sequence[BgrImage], network: Network | None, before: Pixels
+) -> None:
+    """Print what has moved in other pictures of the same; `before` are the keypoints of the originals."""
+    pairs = zip(originals.images, images, originals.landmarks, strict=True)
+    print(report(name, [each for a, b, truth in pairs for each in shifts(a, b, truth)]), flush=True)
+    if network is not None:
+        after = found_in(network, images, originals.landmarks)
+        print(report(f"{name}: keypoints move by", after - before))
+        print(report(f"{name}: keypoints are wrong by", after - originals.exact), flush=True)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", type=Path)
-    parser.add_argument("--crf", type=float, nargs="+", default=[22.0, 26.0, 30.0])
+    parser.add_argument("--crf", type=float, nargs="+", default=[20.0, 24.0, 28.0])
     parser.add_argument("--last", type=int, default=50, help="so many frames, the last of the scene")
     parser.add_argument("--network", type=Path, help="ONNX file of a landmark network")
     options = parser.parse_args(arguments)
     landmarks = true_landmarks(options.scene)
     frames = [frame for frame in sorted(landmarks) if picture_path(options.scene, frame).is_file()][-options.last :]
-    images = [read_image(picture_path(options.scene, frame)) for frame in frames]
-    stamps = [40_000_000 * frame for frame in frames]
-    shown = [landmarks[frame] for frame in frames]
+    originals = Originals(
+        images=[read_image(picture_path(options.scene, frame)) for frame in frames],
+        landmarks=[landmarks[frame] for frame in frames],
+    )
     network = None if options.network is None else Network(options.network)
-    exact = np.concatenate([each.pixels[each.visible] for each in shown])
-    original = None if network is None else found_in(network, images, shown)
+    before = originals.exact if network is None else found_in(network, originals.images, originals.landmarks)
     print("| | landmarks | rms of a coordinate [px] | median length | 95 % | largest |\n|---|---|---|---|---|---|")
+    if network is not None:
+        print(report("keypoints are wrong by", before - originals.exact))
     if all(linear_path(options.scene, frame).is_file() for frame in frames):
-        others = zip(images, noisy(options.scene, frames), shown, strict=True)
-        print(report("other noise", [each for a, b, truth in others for each in shifts(a, b, truth)]))
-    if original is not None:
-        print(report("error of the keypoints", original - exact))
+        compare("other noise", originals, list(noisy(options.scene, frames)), network, before)
     for crf in options.crf:
-        decoded, size = coded(images, stamps, crf)
-        pairs = zip(images, decoded, shown, strict=True)
-        moved = [each for a, b, truth in pairs for each in shifts(a, b, truth)]
-        print(report(f"crf {crf:g}, {size:.0f} kB a picture", moved), flush=True)
-        if network is not None and original is not None:
-            found = found_in(network, decoded, shown)
-            print(report(f"crf {crf:g}: keypoints move by", found - original))
-            print(report(f"crf {crf:g}: error of the keypoints", found - exact), flush=True)
+        decoded, size = coded(originals.images, [round(1e9 * frame / RATE_HZ) for frame in frames], crf)
+        compare(f"crf {crf:g}, {size:.0f} kB a picture", originals, decoded, network, before)
     return 0
 
 

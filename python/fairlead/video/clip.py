@@ -96,5 +96,5 @@ def video_stamps(path: Path) -> list[int]:
     import av
 
     with av.open(str(path)) as container:
-        packets = [packet for packet in container.demux(container.streams.video[0]) if packet.size > 0]
+        packets: Any = [packet for packet in container.demux(container.streams.video[0]) if packet.size > 0]
         return sorted(round(packet.pts * packet.time_base * 10**9) for packet in packets)
