@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
 
-from fairlead.sinks.autopilots import Autopilot
-from fairlead.sources.argument import Source
+from fairlead.sinks.argument import SinkOptions
+from fairlead.sources.argument import ImageOptions, Source
 
 Method = Literal["map", "window", "epnp"]
 StudyKind = Literal["noise", "angle", "grid"]
@@ -21,20 +21,15 @@ class UsageError(ValueError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class InputConfig:
+class InputConfig(ImageOptions):
     """What track and refine are told alike."""
 
     source: Positional[Source]
-    """observations.csv or .parquet; or, with --detector, images: a folder, a BOP scene, a video, a bag or .mcap,
-    camera:0, rtsp://..."""
+    """observations.csv, .parquet; with --detector images: folder, BOP scene, video, bag, camera:0, rtsp://..."""
     target: Path
     """target.toml: landmarks, and how well they are known."""
     output: Annotated[Path, arg(aliases=["-o"])]
     """Folder for the results; files of an earlier run in it are replaced."""
-    camera: Path | None = None
-    """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt. A bag may bring its own."""
-    detector: str | None = None
-    """What finds the landmarks in images, e.g. network.onnx, frigate (shipped), aruco:DICT_4X4_100, apriltag:36h11."""
     truth: Path | None = None
     """truth.csv; the run is then evaluated as well."""
     options: Path | None = None
@@ -43,12 +38,6 @@ class InputConfig:
     """range.csv: readings of a range finder (method map)."""
     attitude: Path | None = None
     """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
-    fps: float | None = None
-    """Frames per second of images without stamps [1/s]."""
-    topic: str | None = None
-    """Which images of a bag that holds several."""
-    camera_name: str | None = None
-    """Which camera of a file that holds several."""
     min_coverage: float = 0.5
     """Exit status 1 if a smaller share of the frames got a pose [-]."""
 
@@ -60,35 +49,11 @@ class InputConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrackConfig(InputConfig):
+class TrackConfig(InputConfig, SinkOptions):
     """Track a target through images or a table of observations, frame by frame."""
 
     method: Method = "map"
     """map: this project's estimator. window: the published one. epnp: each frame alone."""
-    overlay: Path | None = None
-    """Video (.mkv) of the images with silhouette, landmarks and their uncertainty drawn over them."""
-
-    viewer: bool = False
-    """Show it while it runs (rerun)."""
-    rrd: Path | None = None
-    """File (.rrd) of what the viewer shows, to look at later with `rerun FILE`."""
-    mcap: Path | None = None
-    """ROS 2 messages of every frame: /fairlead/pose, /tf, /diagnostics."""
-    mavlink: str | None = None
-    """Autopilot to tell: udpout:127.0.0.1:14550, udpin:HOST:PORT, tcp:HOST:PORT, /dev/ttyACM0:921600; then --autopilot
-    and --mount too."""
-    autopilot: Autopilot | None = None
-    """Which rules it follows."""
-    mount: Path | None = None
-    """mount.toml: where the camera sits on the vehicle."""
-    mavlink_key: Path | None = None
-    """File with the secret that messages are signed with: 32 bytes or 64 hexadecimal digits."""
-    mavlink_systems: tuple[int, ...] = (1,)
-    """System ids that are listened to; the first one is the vehicle."""
-    mavlink_rate: float = 20.0
-    """Estimates sent at most [1/s]."""
-    parquet: bool = False
-    """Write poses.parquet at the end, too."""
 
 
 @dataclass(frozen=True, kw_only=True)

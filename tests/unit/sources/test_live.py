@@ -101,30 +101,31 @@ def test_cameras_that_are_not_there(tmp_path: Path) -> None:
         list(open_images("rtsp://me:secret@127.0.0.1:1/a", CAMERA, fps=None, topic=None))
 
 
+def send_stream(port: int, stop: threading.Event) -> None:
+    """Noise with a square that gets brighter, 20 images a second."""
+    container = av.open(f"udp://127.0.0.1:{port}?pkt_size=1316", "w", format="mpegts")
+    stream = container.add_stream("mpeg2video", rate=20)
+    stream.width, stream.height, stream.pix_fmt, stream.gop_size = 320, 240, "yuv420p", 2
+    rng = np.random.default_rng(0)
+    for i in range(200):
+        picture = np.repeat(rng.integers(0, 256, (240, 320, 1), dtype=np.uint8), 3, axis=2)
+        picture[:40, :40] = 20 + i
+        frame = av.VideoFrame.from_ndarray(picture, format="bgr24")
+        frame.pts = i
+        for packet in stream.encode(frame):
+            container.mux(packet)
+        if stop.wait(0.05):
+            break
+    container.close()
+
+
 def test_a_stream_from_the_network_keeps_its_stamps_on_this_machines_clock() -> None:
     """MPEG-TS over UDP on the loopback: images 50 ms apart, taken before they are here."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     stop = threading.Event()
-
-    def send() -> None:
-        container = av.open(f"udp://127.0.0.1:{port}?pkt_size=1316", "w", format="mpegts")
-        stream = container.add_stream("mpeg2video", rate=20)
-        stream.width, stream.height, stream.pix_fmt, stream.gop_size = 320, 240, "yuv420p", 2
-        rng = np.random.default_rng(0)
-        for i in range(200):
-            picture = np.repeat(rng.integers(0, 256, (240, 320, 1), dtype=np.uint8), 3, axis=2)
-            picture[:40, :40] = 20 + i
-            frame = av.VideoFrame.from_ndarray(picture, format="bgr24")
-            frame.pts = i
-            for packet in stream.encode(frame):
-                container.mux(packet)
-            if stop.wait(0.05):
-                break
-        container.close()
-
-    sender = threading.Thread(target=send, daemon=True)
+    sender = threading.Thread(target=send_stream, args=(port, stop), daemon=True)
     sender.start()
     source = open_images(f"udp://127.0.0.1:{port}", CAMERA, fps=None, topic=None)
     assert isinstance(source, LiveImages)
