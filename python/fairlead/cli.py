@@ -18,6 +18,7 @@ from tyro.conf import subcommand
 
 from fairlead.config import (
     AnnotateConfig,
+    BootstrapConfig,
     Config,
     DemoConfig,
     EvaluateConfig,
@@ -45,6 +46,7 @@ _Command = (
     | Annotated[RenderConfig, subcommand("render")]
     | Annotated[StudyConfig, subcommand("study")]
     | Annotated[AnnotateConfig, subcommand("annotate")]
+    | Annotated[BootstrapConfig, subcommand("bootstrap")]
 )
 
 
@@ -105,6 +107,8 @@ def _run(config: Config) -> int:
         return _study(config)
     if isinstance(config, AnnotateConfig):
         return _annotate(config)
+    if isinstance(config, BootstrapConfig):
+        return _bootstrap(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -160,6 +164,16 @@ def _annotate(config: AnnotateConfig) -> int:
         sys.stdout.flush()
 
     annotate(config, tell)
+    return 0
+
+
+def _bootstrap(config: BootstrapConfig) -> int:
+    from fairlead.prepare import bootstrap
+
+    made = bootstrap(config)
+    counts = f"{len(made.target.landmarks)} landmarks from {made.views} views, {made.reprojection_rms_px:.2f} px"
+    left_out = f" (too few views show {', '.join(made.left_out)})" if made.left_out else ""
+    sys.stdout.write(f"{config.output}: {counts}{left_out}\n")
     return 0
 
 

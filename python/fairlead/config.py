@@ -234,6 +234,30 @@ class AnnotateConfig:
             raise UsageError(f"--port: expected 0 to 65535, got {self.port}")
 
 
+@dataclass(frozen=True, kw_only=True)
+class BootstrapConfig:
+    """A first target where there is none: from a few views of unsurveyed tags, or of marked landmarks."""
+
+    source: Positional[Path]
+    """observations.csv or .parquet, or a folder of photographs (then --detector too)."""
+    camera: Path
+    """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt."""
+    output: Annotated[Path, arg(aliases=["-o"])]
+    """target.toml to be written; its covariance goes beside it."""
+    detector: str | None = None
+    """What finds the tags in photographs, e.g. apriltag:36h11."""
+    tag_size_m: float | None = None
+    """Side of the black square of every tag [m]."""
+    tag_sigma_m: float | None = None
+    """How well it is known [m]; a hundredth of it if not given."""
+    distance: tuple[str, str, float] | None = None
+    """Without tags: two landmarks and how far apart they are [m], e.g. bow stern 140.1."""
+    distance_sigma_m: float | None = None
+    """How well it is known [m]; a hundredth of it if not given."""
+    name: str | None = None
+    """Of the target; that of the output file if not given."""
+
+
 Config = (
     TrackConfig
     | RefineConfig
@@ -243,4 +267,5 @@ Config = (
     | StudyConfig
     | DemoConfig
     | AnnotateConfig
+    | BootstrapConfig
 )

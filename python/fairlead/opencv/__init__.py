@@ -18,6 +18,7 @@ from fairlead.opencv.markers import (
 )
 from fairlead.opencv.pnp import MIN_POINTS, PnpSolution, epnp, ideal_pixels, ippe, refine, sqpnp
 from fairlead.opencv.pnp_views import epnp_views
+from fairlead.opencv.two_views import TwoViews, relative_pose
 
 __all__ = [
     "MIN_POINTS",
@@ -25,6 +26,7 @@ __all__ = [
     "GreyImage",
     "Image",
     "PnpSolution",
+    "TwoViews",
     "carry_points",
     "charuco_corners",
     "chessboard_corners",
@@ -39,5 +41,6 @@ __all__ = [
     "marker_image",
     "read_image",
     "refine",
+    "relative_pose",
     "sqpnp",
 ]
