@@ -40,7 +40,7 @@ ARGUMENTS = (
     *("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
     *("--disable-gpu-rasterization", "--disable-gpu-compositing"),
 )
-WAIT_MS = 90_000
+WAIT_MS = 45_000
 
 
 @dataclass
@@ -149,6 +149,31 @@ def status(page: Any, text: str) -> None:
     page.get_by_text(text).first.wait_for()
 
 
+def edit_in_3d(page: Any, folder: Path) -> None:
+    """Pick a point on the mesh, name it, drag it over the surface, delete it."""
+    canvas = page.locator("canvas").bounding_box()
+    x, y = canvas["x"] + 0.5 * canvas["width"], canvas["y"] + 0.5 * canvas["height"]
+    page.mouse.dblclick(x, y)
+    status(page, "add p13")
+    page.get_by_label("name").first.fill("bow")
+    page.keyboard.press("Enter")
+    status(page, "rename p13 to bow")
+    before = read_journal(folder / "labels.jsonl").labels.landmarks[-1]
+    page.mouse.move(x, y)
+    page.wait_for_timeout(500)
+    page.mouse.down()
+    page.mouse.move(x + 30, y + 25, steps=4)
+    page.mouse.up()
+    status(page, "move bow")
+    after = read_journal(folder / "labels.jsonl").labels.landmarks[-1]
+    assert (before.name, after.name) == ("bow", "bow")
+    assert after.position_m != before.position_m
+    surface = load_surface(folder / "satellite.ply")
+    assert surface.distance_m(np.array([before.position_m, after.position_m])).max() < 1e-3
+    page.keyboard.press("Delete")
+    status(page, "delete bow")
+
+
 def click_landmarks(page: Any, folder: Path, T_camera_target: np.ndarray) -> int:
     """Click on every landmark that can be seen where it is; the page says which is next."""
     labels = read_journal(folder / "labels.jsonl").labels
@@ -177,6 +202,8 @@ def test_from_mesh_and_frames_to_a_tracked_run(browser: Any, folder: Path, seque
         page = open_page(browser, server.address, strangers)
         page.get_by_role("button", name="Suggest").click()
         status(page, "add 12 landmarks")
+        edit_in_3d(page, folder)
+        page.mouse.move(5, 5)
         picture(page, "landmarks")
         page.get_by_role("tab", name="Frames").click()
         page.locator(".box img").wait_for()
