@@ -41,7 +41,7 @@ nb::tuple update(Tracker& tracker, std::int64_t stamp_ns, const Indices& landmar
 
 nb::tuple refine_views(const Camera& camera, const Rows3& X0, const Square& P0, const Indices64& stamps_ns,
                        const Indices& sizes, const Indices& landmarks, const Rows2& pixels, const Rows22& covariances,
-                       const TrackerOptions& options) {
+                       const TrackerOptions& options, const BatchReadings& readings) {
     const std::vector<Observation> observations = to_observations(landmarks, pixels, covariances);
     if (sizes.size() != stamps_ns.size()) throw std::invalid_argument("sizes: expected one per stamp");
     std::vector<BatchView> views;
@@ -58,13 +58,14 @@ nb::tuple refine_views(const Camera& camera, const Rows3& X0, const Square& P0, 
     const MatX P = to_matrix(P0);
     {
         const nb::gil_scoped_release release;
-        refinement = refine(camera, X, P, views, options);
+        refinement = refine(camera, X, P, views, options, readings);
     }
     nb::list estimates;
     for (const Estimate& e : refinement.estimates) estimates.append(as_tuple(e));
     return nb::make_tuple(estimates, to_array(refinement.X), to_array(refinement.covariance), refinement.noise_factor,
                           refinement.prior_factor, refinement.prior_factor_believed, refinement.cost,
-                          refinement.iterations, refinement.converged);
+                          refinement.iterations, refinement.converged, refinement.ranges_believed,
+                          refinement.ranges_refused, refinement.range_bias_m, refinement.range_bias_sigma_m);
 }
 
 window::Problem make_problem(const Camera& camera, const Rows3& X, const Rows44& T, const Indices& view_index,
@@ -145,10 +146,24 @@ void bind_options(nb::module_& m) {
         .def_rw("seed", &TrackerOptions::seed);
 }
 
+void bind_readings(nb::module_& m) {
+    nb::class_<BatchReadings>(m, "BatchReadings")
+        .def(nb::init<>())
+        .def_rw("range_bias_sigma_m", &BatchReadings::range_bias_sigma_m)
+        .def("add_length", [](BatchReadings& readings, int a, int b, double length_m,
+                              double sigma_m) { readings.lengths.push_back({a, b, length_m, sigma_m}); })
+        .def("add_range", [](BatchReadings& readings, std::int64_t stamp_ns, double range_m, double sigma_m,
+                             int landmark) { readings.ranges.push_back({stamp_ns, {landmark, range_m, sigma_m}}); })
+        .def("add_attitude", [](BatchReadings& readings, std::int64_t stamp_ns, const Square& R, double sigma_rad) {
+            readings.attitudes.push_back({stamp_ns, {to_rotation(R), sigma_rad}});
+        });
+}
+
 }  // namespace
 
 void bind_tracker(nb::module_& m) {
     bind_options(m);
+    bind_readings(m);
     nb::class_<Tracker>(m, "Tracker")
         .def("__init__",
              [](Tracker* self, const Camera& camera, const Rows3& X0, const Square& P0, const TrackerOptions& options) {
@@ -161,6 +176,7 @@ void bind_tracker(nb::module_& m) {
         .def("add_pose", [](Tracker& t, std::int64_t stamp_ns, const Rows44& T,
                             const Square& covariance) { t.add_pose(stamp_ns, to_pose(T, 0), to_matrix(covariance)); })
         .def("update", &update)
+        .def("predict", [](const Tracker& t, std::int64_t stamp_ns) { return as_tuple(t.predict(stamp_ns)); })
         .def("landmarks",
              [](const Tracker& t) { return to_array(std::vector<Vec3>(t.landmarks().begin(), t.landmarks().end())); })
         .def("landmark_covariance", [](const Tracker& t) { return to_array(t.landmark_covariance()); })

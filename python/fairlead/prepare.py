@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The meeting point before there is a target: folders and photographs to `annotate` and `bootstrap`."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,16 +10,20 @@ from fairlead.annotate.project import JOURNAL, Frame, Project, open_project
 from fairlead.annotate.surface import SUFFIXES as MESHES
 from fairlead.annotate.surface import Surface, load_surface
 from fairlead.bootstrap import BootstrapError, Bootstrapped, bootstrap_landmarks, bootstrap_tags
-from fairlead.config import AnnotateConfig, BootstrapConfig, UsageError
+from fairlead.config import UsageError
 from fairlead.detect import detector_from_spec
 from fairlead.io.bop import is_bop
 from fairlead.io.camera import load_camera
+from fairlead.io.csv_lines import CsvWriter
 from fairlead.io.errors import InputError
 from fairlead.io.observations import read_views
 from fairlead.io.target import load_target, save_target
+from fairlead.opencv.filters import write_image
 from fairlead.sources.bop import BopSource
 from fairlead.sources.image_folder import SUFFIXES as IMAGES
 from fairlead.sources.image_folder import ImageFolderSource
+from fairlead.sources.opening import open_images
+from fairlead.target_config import AnnotateConfig, BootstrapConfig
 from fairlead.types import Camera, KnownDistance, Target, View
 
 IMAGE_FOLDERS = ("images", "rgb", ".")
@@ -92,11 +97,14 @@ def _camera(config: AnnotateConfig) -> Camera | None:
 
 
 def _frames(config: AnnotateConfig, camera: Camera | None) -> list[Frame]:
-    folder = _image_folder(config)
+    recording = None if config.images is None or config.images.is_dir() else config.images
+    folder = config.folder / "images" if recording is not None else _image_folder(config)
     if folder is None:
         return []
     if camera is None:
         raise InputError(config.folder, "holds images and no camera.yaml: expected a calibration there, or --camera")
+    if recording is not None and not folder.exists():
+        _write_frames(recording, folder, camera, config)
     source = _source(folder, camera, config.fps)
     return [Frame(number=number, stamp_ns=stamp_ns, path=path) for number, stamp_ns, path in source.listed()]
 
@@ -111,6 +119,19 @@ def _source(folder: Path, camera: Camera, fps: float | None) -> BopSource | Imag
         if fps is not None or "give --fps" not in str(error):
             raise
         return ImageFolderSource(folder, camera, fps=DEFAULT_FPS)
+
+
+def _write_frames(recording: Path, folder: Path, camera: Camera, config: AnnotateConfig) -> None:
+    """The frames of a video or bag as images with their stamps; the folder is there when all of them are."""
+    part = folder.with_name(f".{folder.name}.part")
+    shutil.rmtree(part, ignore_errors=True)
+    part.mkdir()
+    with CsvWriter(part / "stamps.csv", ("image", "stamp_ns")) as stamps:
+        for each in open_images(recording, camera, fps=config.fps, topic=None):
+            if each.frame % config.every == 0:
+                write_image(part / f"{each.frame:06d}.png", each.image)
+                stamps.write_rows([(f"{each.frame:06d}.png", each.stamp_ns)])
+    part.replace(folder)
 
 
 def _image_folder(config: AnnotateConfig) -> Path | None:

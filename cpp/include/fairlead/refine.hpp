@@ -5,15 +5,33 @@
 #include <span>
 #include <vector>
 
+#include "fairlead/motion/tie.hpp"
 #include "fairlead/pnp/observation.hpp"
 #include "fairlead/tracker/estimate.hpp"
 #include "fairlead/tracker/options.hpp"
+#include "fairlead/window/problem.hpp"
 
 namespace fairlead {
 
 struct BatchView {
     std::int64_t stamp_ns = 0;
     std::span<const Observation> observations;
+};
+
+/// What else is known of a flight, docs/range.md and docs/motion.md. Stamps in any order.
+struct BatchReadings {
+    struct Range {
+        std::int64_t stamp_ns = 0;
+        window::RangeMeasurement range;  ///< to a landmark, or to the target's origin (kOrigin)
+    };
+    struct Attitude {
+        std::int64_t stamp_ns = 0;
+        motion::Attitude attitude;
+    };
+    std::vector<window::LengthMeasurement> lengths;
+    std::vector<Range> ranges;
+    double range_bias_sigma_m = 0.0;  ///< what the range finder may be off by, always the same, one sigma; 0: nothing
+    std::vector<Attitude> attitudes;
 };
 
 struct Refinement {
@@ -26,13 +44,17 @@ struct Refinement {
     double cost = 0.0;                   ///< negative log posterior at the optimum
     int iterations = 0;
     bool converged = false;
+    int ranges_believed = 0, ranges_refused = 0;
+    double range_bias_m = 0.0;        ///< constant error of the range finder, if one was to be looked for
+    double range_bias_sigma_m = 0.0;  ///< one standard deviation of it
 };
 
 /// All views of a flight in one maximum a posteriori estimate of landmarks and poses, docs/estimator.md section 5. The
 /// robust loss is graduated from wide to narrow; every view is tried again from other poses on the refined model, so
-/// that it does not stay in a mirrored minimum. Throws std::invalid_argument for a bad camera, model, covariance or
-/// option.
+/// that it does not stay in a mirrored minimum. Where options.motion says what is smooth, a last stage puts all views
+/// on one path. Throws std::invalid_argument for a bad camera, model, covariance, option or reading.
 [[nodiscard]] Refinement refine(const Camera& camera, std::span<const Vec3> X0, const MatX& P0,
-                                std::span<const BatchView> views, const TrackerOptions& options = {});
+                                std::span<const BatchView> views, const TrackerOptions& options = {},
+                                const BatchReadings& readings = {});
 
 }  // namespace fairlead

@@ -37,10 +37,15 @@ class Tracker {
     /// Where the target is thought to be, before it was found or after it was lost: the search starts there. Throws as
     /// above.
     void add_pose(std::int64_t stamp_ns, const SE3& T_camera_target, const Mat66& covariance);
-    static constexpr int kOrigin = -1;
+    static constexpr int kOrigin = fairlead::kOrigin;
 
     /// The pose of the target in the view taken at stamp_ns. Bad data end in the status, never in an exception.
     Estimate update(std::int64_t stamp_ns, std::span<const Observation> observations) noexcept;
+
+    /// Where the target will be at stamp_ns, from the views so far: the last pose carried on at its rate, status
+    /// coasting, docs/estimator.md eq. (20). Changes nothing. Not ok where nothing is tracked, the stamp is before the
+    /// last view's, or further ahead than coast_limit_s.
+    [[nodiscard]] Estimate predict(std::int64_t stamp_ns) const noexcept;
 
     [[nodiscard]] std::span<const Vec3> landmarks() const noexcept;  ///< current model [m]
     [[nodiscard]] MatX landmark_covariance() const;                  ///< 3N x 3N [m^2]

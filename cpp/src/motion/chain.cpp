@@ -39,14 +39,23 @@ void Chain::restart() noexcept {
     nn_.diagonal().tail(axes_).setConstant(1.0 / (kAcceleration * kAcceleration));
 }
 
-void Chain::predict(double dt, double density) noexcept {
-    const StateSquare back = transition(-dt, axes_);
-    wide_.noalias() = yn_ * back;
+void Chain::clear() noexcept {
+    for (MatX* matrix : {&yy_, &yn_}) matrix->setZero();
+    nn_.setZero();
+    eta_y_.setZero();
+    eta_n_.setZero();
+}
+
+/// n = M m: what was a function of n becomes one of m.
+void Chain::substitute(const StateSquare& M) noexcept {
+    wide_.noalias() = yn_ * M;
     yn_ = wide_;
-    nn_ = (back.transpose() * nn_ * back).eval();
-    eta_n_ = (back.transpose() * eta_n_).eval();
-    // White noise through L: Lambda -= Lambda L (I + L^T Lambda L)^-1 L^T Lambda, docs/motion.md eq. (8).
-    const StateSquare L = noise_factor(dt, density, axes_);
+    nn_ = (M.transpose() * nn_ * M).eval();
+    eta_n_ = (M.transpose() * eta_n_).eval();
+}
+
+/// White noise through L: Lambda -= Lambda L (I + L^T Lambda L)^-1 L^T Lambda, docs/motion.md eq. (8).
+void Chain::diffuse(const StateSquare& L) noexcept {
     StateSquare V = nn_ * L;
     const StateSquare G = StateSquare::Identity(states(), states()) + L.transpose() * V;
     const Eigen::LLT<StateSquare> llt(G);
@@ -60,6 +69,18 @@ void Chain::predict(double dt, double density) noexcept {
     nn_ = (0.5 * (nn_ + nn_.transpose())).eval();
     eta_y_.noalias() -= wide_ * e;
     eta_n_.noalias() -= V * e;
+}
+
+void Chain::predict(double dt, double density) noexcept {
+    substitute(transition(-dt, axes_));
+    diffuse(noise_factor(dt, density, axes_));
+}
+
+void Chain::loosen(double dt, double density) noexcept { diffuse(noise_factor(dt, density, axes_)); }
+
+void Chain::retrodict(double dt, double density) noexcept {
+    diffuse(noise_factor(dt, density, axes_));
+    substitute(transition(dt, axes_));
 }
 
 void Chain::set_model(std::span<const Vec3> X) noexcept {

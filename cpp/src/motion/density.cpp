@@ -13,6 +13,7 @@ namespace {
 constexpr double kStep = 10.0;    // between neighbouring densities
 constexpr int kBelow = 2;         // densities below the told one
 constexpr double kMemory = 2.0;   // [s] over which likelihoods are forgotten
+constexpr double kRecent = 0.4;   // [s] the same, so that the onset of a turn is not outvoted by the calm before it
 constexpr double kBelief = 1.0;   // [nats] per decade by which the told density is preferred
 constexpr double kSpeed = 200.0;  // [m/s] and
 constexpr double kTurn = 50.0;    // [m/s^2] before anything was seen
@@ -27,7 +28,7 @@ DensityBank::DensityBank(double told, int axes) : axes_(axes), told_(told), dens
 
 void DensityBank::start(const Vec3& position, const Mat33& covariance) noexcept {
     for (Filter& filter : filters_) {
-        filter.log_likelihood = 0.0;
+        filter.log_likelihood = filter.recent = 0.0;
         filter.mean.setZero(3 * axes_);
         filter.mean.head(axes_) = position.head(axes_);
         filter.covariance.setZero(3 * axes_, 3 * axes_);
@@ -42,10 +43,7 @@ void DensityBank::start(const Vec3& position, const Mat33& covariance) noexcept 
 void DensityBank::observe(double dt, const Vec3& position, const Mat33& covariance) noexcept {
     if (!started_) return start(position, covariance);
     const StateSquare Phi = transition(dt, axes_);
-    const double forget = std::exp(-dt / kMemory);
-    double best = -1e300;
-    for (int i = 0; i < kFilters; ++i) {
-        Filter& filter = filters_[static_cast<std::size_t>(i)];
+    for (Filter& filter : filters_) {
         const StateSquare L = noise_factor(dt, filter.density, axes_);
         filter.mean = (Phi * filter.mean).eval();
         filter.covariance = (Phi * filter.covariance * Phi.transpose() + L * L.transpose()).eval();
@@ -55,21 +53,31 @@ void DensityBank::observe(double dt, const Vec3& position, const Mat33& covarian
         const StateSquare gain_t = llt.solve(StateSquare(filter.covariance.topRows(axes_)));
         const double nis = innovation.dot(llt.solve(innovation));
         const double log_det = 2.0 * StateSquare(llt.matrixL()).diagonal().array().log().sum();
-        filter.log_likelihood = forget * filter.log_likelihood - 0.5 * (nis + log_det);
+        const double news = -0.5 * (nis + log_det);
+        filter.log_likelihood = std::exp(-dt / kMemory) * filter.log_likelihood + news;
+        filter.recent = std::exp(-dt / kRecent) * filter.recent + news;
         filter.mean.noalias() += gain_t.transpose() * innovation;
         filter.covariance -= (gain_t.transpose() * S * gain_t).eval();
         filter.covariance = (0.5 * (filter.covariance + filter.covariance.transpose())).eval();
-        best = std::max(best, filter.log_likelihood - kBelief * std::abs(i - kBelow));
     }
+    density_ = kCaution * std::max(mean(&Filter::log_likelihood), mean(&Filter::recent));
+}
+
+/// Geometric mean of the densities, weighed by likelihood and by how near they are to the told one.
+double DensityBank::mean(double Filter::* log_likelihood) const noexcept {
+    std::array<double, kFilters> weights;
+    for (int i = 0; i < kFilters; ++i)
+        weights[static_cast<std::size_t>(i)] =
+            filters_[static_cast<std::size_t>(i)].*log_likelihood - kBelief * std::abs(i - kBelow);
+    const double best = *std::max_element(weights.begin(), weights.end());
     double sum = 0.0;
     double log_density = 0.0;
-    for (int i = 0; i < kFilters; ++i) {
-        const Filter& filter = filters_[static_cast<std::size_t>(i)];
-        const double weight = std::exp(filter.log_likelihood - kBelief * std::abs(i - kBelow) - best);
+    for (std::size_t i = 0; i < filters_.size(); ++i) {
+        const double weight = std::exp(weights[i] - best);
         sum += weight;
-        log_density += weight * std::log(filter.density);
+        log_density += weight * std::log(filters_[i].density);
     }
-    density_ = kCaution * std::exp(log_density / sum);
+    return std::exp(log_density / sum);
 }
 
 }  // namespace fairlead::motion

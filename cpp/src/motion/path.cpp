@@ -6,23 +6,14 @@
 #include <algorithm>
 
 namespace fairlead::motion {
-namespace {
 
-constexpr double kMaxInterval = 10.0;    // [s] without a view after which the motion begins anew
-constexpr std::size_t kKept = 1024;      // views of the past that are gone through again
-constexpr std::size_t kLookedBack = 32;  // of them in an update, backwards
-constexpr std::size_t kRetraced = 6;     // of them in an update
-constexpr int kPoseIterations = 2;
-
-}  // namespace
-
-Path::Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge gauge)
+Path::Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge gauge, std::size_t kept)
     : kind_(kind),
       axes_(axes_of(kind)),
       chain_(X_ref, gauge, axes_),
       base_(chain_),
       anew_(chain_),
-      past_(kKept),
+      past_(kept),
       bank_(density, axes_),
       tie_(static_cast<int>(X_ref.size())) {
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref.size());
@@ -33,6 +24,7 @@ Path::Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge
     n_.setZero(chain_.states());
     y_.setZero(joint);
     L_inverse_.setIdentity(joint, joint);
+    loosened_ = density_ = density;
     for (Past& past : past_) {
         past.view = window::ViewBlock(static_cast<int>(X_ref.size()));
         past.later_information.setZero(chain_.states(), chain_.states());
@@ -45,6 +37,7 @@ void Path::restart() noexcept {
     base_ = anew_ = chain_;
     kept_ = retraced_ = to_look_back_ = 0;
     bank_.restart();
+    loosened_ = density_ = bank_.density();
     started_ = false;
 }
 
@@ -56,6 +49,7 @@ void Path::advance(std::int64_t stamp_ns, std::span<const Vec3> X, const std::op
     }
     density_ = bank_.density();
     if (interval_s_ > 0.0) chain_.predict(interval_s_, density_);
+    catch_up();
     stamp_ns_ = stamp_ns;
     started_ = true;
     attitude_ = attitude;
@@ -115,14 +109,24 @@ bool Path::join(const window::ViewBlock& view, std::span<const Vec3> X, double n
     chain_.set_model(X);
     chain_.linearise(n_);
     tie(chain_, view.state.T_camera_target, X, attitude_, n_);
-    JointSquare H;
-    Joint h;
-    motion_system(chain_, view, noise_factor, n_, H, h);
-    rows_t_.setZero();
-    rows_t_.rightCols(chain_.states()) = chain_.H_Xn;
-    if (tied_) rows_t_.middleCols(6, axes_).noalias() -= tie_.J_X_t * tie_.information.leftCols(axes_);
     S += chain_.H_XX;
     g += chain_.g_X;
+    return eliminate(chain_, view, X, noise_factor, n_, nullptr, S, g);
+}
+
+/// Pose and motion of a view out of the system; the chain linearised at n, the tie measured.
+bool Path::eliminate(const Chain& chain, const window::ViewBlock& view, std::span<const Vec3> X, double noise_factor,
+                     const State& n, const Later* later, MatX& S, VecX& g) noexcept {
+    JointSquare H;
+    Joint h;
+    motion_system(chain, view, noise_factor, n, H, h);
+    rows_t_.setZero();
+    rows_t_.rightCols(chain.states()) = chain.H_Xn;
+    if (later != nullptr) {
+        H.bottomRightCorner(chain.states(), chain.states()) += later->nn;
+        rows_t_.rightCols(chain.states()) += later->Xn;
+    }
+    if (tied_) rows_t_.middleCols(6, axes_).noalias() -= tie_.J_X_t * tie_.information.leftCols(axes_);
     add_view(view, X, noise_factor, S, g);
 
     const Eigen::LLT<JointSquare> llt(H);
@@ -156,8 +160,7 @@ Mat66 Path::covariance(const window::ViewBlock& view, double noise_factor, const
 /// The view with its pose eliminated into the chain, at the tie as last measured.
 void Path::absorb(Chain& chain, const window::ViewBlock& view, std::span<const Vec3> X, double noise_factor,
                   const State& n) noexcept {
-    if (!tied_) return;
-    const Mat33& W = tie_.information;
+    const Mat33 W = tied_ ? tie_.information : Mat33::Zero();  // without a tie the view still knows of the shape
     const Eigen::Matrix<double, 3, 6> WJ = W * tie_.J_pose;
     const Mat66 H = view.H / noise_factor + tie_.J_pose.transpose() * WJ;
     const Vec6 h = view.g / noise_factor + WJ.transpose() * residual_;
@@ -200,90 +203,6 @@ bool Path::own_position(const window::ViewBlock& view, double noise_factor, Vec3
     const Eigen::Matrix<double, 6, 3> spread = llt.solve(tie_.J_pose.transpose());
     covariance = noise_factor * tie_.J_pose * spread + tie_.covariance;
     return true;
-}
-
-/// One view of the past into a chain: its pose and motion fitted to the model as it is now and to the views before and
-/// after it, then absorbed. A view linearised at its own noise, or at what only earlier views say, would claim to know
-/// the model.
-void Path::retrace(Chain& chain, Past& past, const window::Problem& problem) noexcept {
-    if (past.interval_s > 0.0) chain.predict(past.interval_s, past.density);
-    State n = chain.expected_motion();
-    SE3& T = past.view.state.T_camera_target;
-    for (int iteration = 0;; ++iteration) {
-        if (!window::linearise(problem.camera, problem.X, problem.told_loss(), problem.noise_factor, past.view)) return;
-        tie(chain, T, problem.X, past.attitude, n);
-        if (iteration == kPoseIterations) break;
-        JointSquare H;
-        Joint h;
-        motion_system(chain, past.view, problem.noise_factor, n, H, h);
-        H.bottomRightCorner(chain.states(), chain.states()) += past.later_information;
-        h.tail(chain.states()) += past.later_information * n - past.later;
-        const Eigen::LLT<JointSquare> llt(H);
-        const Joint step = -llt.solve(h);
-        if (llt.info() != Eigen::Success || !step.allFinite()) return;
-        T = perturb(T, Vec6(step.head<6>()));
-        n += step.tail(chain.states());
-    }
-    Mat33 covariance;
-    past.information.setZero();
-    if (own_position(past.view, problem.noise_factor, past.position, covariance))
-        past.information.topLeftCorner(axes_, axes_) =
-            StateSquare(covariance.topLeftCorner(axes_, axes_)).llt().solve(StateSquare::Identity(axes_, axes_));
-    absorb(chain, past.view, problem.X, problem.noise_factor, n);
-}
-
-/// What view i and those after it say of the motion at view i - 1: an information filter against time.
-void Path::look_back(std::size_t i) noexcept {
-    const Past& here = past(i);
-    Past& before = past(i - 1);
-    StateSquare J = here.later_information;
-    State j = here.later;
-    J.topLeftCorner(axes_, axes_) += here.information.topLeftCorner(axes_, axes_);
-    j.head(axes_) += (here.information * here.position).head(axes_);
-    if (!(here.interval_s > 0.0)) return;
-    const StateSquare L = noise_factor(here.interval_s, here.density, axes_);
-    const StateSquare Phi = transition(here.interval_s, axes_);
-    const StateSquare JL = J * L;
-    const Eigen::LLT<StateSquare> llt(StateSquare::Identity(3 * axes_, 3 * axes_) + L.transpose() * JL);
-    J -= JL * llt.solve(JL.transpose());
-    j -= JL * llt.solve(L.transpose() * j);
-    before.later_information = Phi.transpose() * J * Phi;
-    before.later = Phi.transpose() * j;
-}
-
-/// Forwards with the model as it is now; then back, so that the next time forwards every view knows of those after it.
-void Path::go_through_some(const window::Problem& problem) noexcept {
-    for (std::size_t i = 0; i < kLookedBack && to_look_back_ > 1; ++i) look_back(--to_look_back_);
-    if (to_look_back_ > 1) return;
-    anew_.set_model(problem.X);
-    for (std::size_t i = 0; i < kRetraced && retraced_ < kept_; ++i) retrace(anew_, past(retraced_++), problem);
-    if (retraced_ < kept_) return;
-    std::swap(chain_, anew_);
-    anew_ = base_;
-    retraced_ = 0;
-    to_look_back_ = kept_;
-}
-
-/// Puts the view in the place of a free block of the past; the oldest makes room.
-void Path::keep(window::ViewBlock& view, const window::Problem& problem) noexcept {
-    if (kept_ == past_.size()) {
-        base_.set_model(problem.X);
-        retrace(base_, past(0), problem);
-        first_ = (first_ + 1) % past_.size();
-        --kept_;
-        to_look_back_ -= to_look_back_ > 0 ? 1 : 0;
-        if (retraced_ > 0)
-            --retraced_;
-        else
-            anew_ = base_;
-    }
-    Past& slot = past(kept_++);
-    std::swap(slot.view, view);
-    slot.interval_s = interval_s_;
-    slot.density = density_;
-    slot.attitude = attitude_;
-    slot.later_information.setZero();
-    slot.later.setZero();
 }
 
 window::ViewBlock Path::settle(window::ViewBlock&& view, const window::Problem& problem) noexcept {

@@ -19,6 +19,7 @@ void Coast::restart(std::int64_t stamp_ns, const SE3& T, const Mat66& covariance
     T_ = reference_ = T;
     covariance_ = covariance;
     range_rate_ = 0.0;
+    velocity_.setZero();
     Vec6 rate;
     rate << Vec3::Constant(kUnknownSpeed * T.t.norm()), Vec3::Constant(kUnknownTurn);
     rate_ = rate.cwiseAbs2().asDiagonal();
@@ -30,8 +31,8 @@ void Coast::observe(std::int64_t stamp_ns, const SE3& T, const Mat66& covariance
     covariance_ = covariance;
     const double interval = 1e-9 * static_cast<double>(stamp_ns - reference_ns_);
     if (interval < kInterval) return;
-    const Vec6 v = difference(reference_, T) / interval;
-    rate_ = kMemory * rate_ + (1.0 - kMemory) * v * v.transpose();
+    velocity_ = difference(reference_, T) / interval;
+    rate_ = kMemory * rate_ + (1.0 - kMemory) * velocity_ * velocity_.transpose();
     range_rate_ = (T.t.norm() - reference_.t.norm()) / interval;
     reference_ns_ = stamp_ns;
     reference_ = T;
@@ -40,6 +41,16 @@ void Coast::observe(std::int64_t stamp_ns, const SE3& T, const Mat66& covariance
 Mat66 Coast::covariance(std::int64_t stamp_ns) const noexcept {
     const double age = age_s(stamp_ns);
     return covariance_ + age * age * rate_;
+}
+
+Estimate Coast::predict(Estimate estimate, double limit_s) const noexcept {
+    const double age = age_s(estimate.stamp_ns);
+    if (age < 0.0) return without_pose(estimate, Status::lost, Reason::stamp);
+    if (age > limit_s) return without_pose(estimate, Status::lost, Reason::none);
+    estimate.status = Status::coasting;
+    estimate.T_camera_target = perturb(T_, age * velocity_);
+    estimate.covariance = covariance(estimate.stamp_ns);
+    return estimate;
 }
 
 void update_pose(const Camera& camera, const UncertainModel& model, std::span<const Observation> inflated, SE3& T,

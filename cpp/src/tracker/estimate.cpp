@@ -42,4 +42,13 @@ const char* to_string(Reason reason) noexcept {
     return "";
 }
 
+Estimate without_pose(Estimate estimate, Status status, Reason reason) noexcept {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    estimate.status = status;
+    estimate.reason = reason;
+    estimate.T_camera_target = {Mat33::Constant(nan), Vec3::Constant(nan)};
+    estimate.covariance.setConstant(nan);
+    return estimate;
+}
+
 }  // namespace fairlead

@@ -10,9 +10,6 @@
 namespace fairlead {
 namespace {
 
-constexpr double kMaxRangeAge = 0.5;     // [s] between a range and the view it is used with
-constexpr double kMaxAttitudeAge = 0.1;  // [s] the same of an attitude
-
 double seconds(std::int64_t ns) noexcept { return 1e-9 * static_cast<double>(ns); }
 
 }  // namespace
@@ -29,6 +26,33 @@ bool is_rotation(const Mat33& R) noexcept {
     return R.allFinite() && (R.transpose() * R - Mat33::Identity()).norm() < 1e-6 && R.determinant() > 0.0;
 }
 
+void require_attitude(const motion::Attitude& attitude) {
+    require(is_rotation(attitude.R_world_camera), "R_world_camera", "another matrix", "a rotation");
+    require(attitude.sigma_rad >= 0.0 && std::isfinite(attitude.sigma_rad), "sigma_rad",
+            std::to_string(attitude.sigma_rad), "zero or more");
+}
+
+void require_length(const window::LengthMeasurement& length, int landmarks) {
+    const auto& [a, b, length_m, sigma_m] = length;
+    require(a >= 0 && b >= 0 && a < landmarks && b < landmarks && a != b, "length between",
+            std::to_string(a) + " and " + std::to_string(b), "two landmarks of " + std::to_string(landmarks));
+    require_positive(length_m, "length_m");
+    require_positive(sigma_m, "sigma_m");
+}
+
+int range_landmark(int landmark, int landmarks, bool to_origin) {
+    require((landmark == kOrigin && to_origin) || (landmark >= 0 && landmark < landmarks), "range to",
+            std::to_string(landmark), "a landmark, or the origin with the option range_to_origin");
+    return landmark == kOrigin ? landmarks : landmark;
+}
+
+void add_origin(std::vector<Vec3>& X, MatX& P) {
+    const MatX told = P;
+    X.emplace_back(Vec3::Zero());
+    P = MatX::Zero(told.rows() + 3, told.cols() + 3);
+    P.topLeftCorner(told.rows(), told.cols()) = told;
+}
+
 void Readings::add_range(std::int64_t stamp_ns, const window::RangeMeasurement& range) {
     require_positive(range.range_m, "range_m");
     require_positive(range.sigma_m, "sigma_m");
@@ -38,9 +62,7 @@ void Readings::add_range(std::int64_t stamp_ns, const window::RangeMeasurement& 
 }
 
 void Readings::add_attitude(std::int64_t stamp_ns, const motion::Attitude& attitude) {
-    require(is_rotation(attitude.R_world_camera), "R_world_camera", "another matrix", "a rotation");
-    require(attitude.sigma_rad >= 0.0 && std::isfinite(attitude.sigma_rad), "sigma_rad",
-            std::to_string(attitude.sigma_rad), "zero or more");
+    require_attitude(attitude);
     attitude_ns_ = stamp_ns;
     attitude_ = attitude;
 }

@@ -4,215 +4,47 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <stdexcept>
-#include <string>
 
-#include "fairlead/tracker/sanitise.hpp"
-#include "fairlead/tracker/start_pose.hpp"
-#include "fairlead/window/covariance.hpp"
+#include "batch.hpp"
+#include "fairlead/tracker/readings.hpp"
 #include "fairlead/window/gauge_curvature.hpp"
-#include "fairlead/window/levenberg_marquardt.hpp"
 
 namespace fairlead {
-namespace {
 
-constexpr int kGraduations = 12;        // at most, of loss width and variance factors
-constexpr double kFactorChange = 0.01;  // relative change of the factors that counts as settled
-constexpr int kSecondLooks = 3;         // rounds in which views are tried from other poses
-
-/// One view of the batch and where it stands in the problem (-1: not solved).
-struct Candidate {
-    std::vector<Observation> observations;
-    std::int64_t stamp_ns = 0;
-    int dropped = 0;
-    int view = -1;
-    Reason reason = Reason::none;
-};
-
-class Batch {
-  public:
-    Batch(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options)
-        : options_(options), workspace_(static_cast<int>(X0.size())), Sigma_(P0) {
-        problem_.camera = camera;
-        problem_.prior = window::make_prior(X0, P0);
-        problem_.X.assign(X0.begin(), X0.end());
-        scratch_.reserve(X0.size());
-        update_blocks();
-    }
-
-    void add(const BatchView& view) {
-        Candidate candidate;
-        candidate.stamp_ns = view.stamp_ns;
-        candidate.observations.reserve(problem_.X.size());
-        candidate.dropped = sanitise(view.observations, problem_.landmarks(), candidate.observations);
-        candidates_.push_back(std::move(candidate));
-    }
-
-    Refinement solve() {
-        start_missing_views();
-        if (!problem_.views.empty()) graduate(widest_loss());
-        for (int round = 0; round < kSecondLooks && !problem_.views.empty(); ++round) {
-            const bool added = start_missing_views();
-            const bool moved = take_second_look();
-            if (!added && !moved) break;
-            graduate(1.0);
-        }
-        return result();
-    }
-
-  private:
-    bool start_missing_views();
-    bool take_second_look();
-    double widest_loss();
-    void graduate(double mu);
-    void update_blocks();
-    Refinement result();
-    Estimate estimate(const Candidate& candidate);
-
-    [[nodiscard]] UncertainModel model() const { return {problem_.X, blocks_}; }
-    [[nodiscard]] double cost(const window::ViewBlock& view, const SE3& T) const {
-        return window::view_cost(problem_.camera, problem_.X, problem_.told_loss(), problem_.noise_factor, T, view);
-    }
-
-    TrackerOptions options_;
-    window::Problem problem_;
-    window::Workspace workspace_;
-    MatX Sigma_, H_data_;
-    VecX g_data_;
-    std::vector<Mat33> blocks_;
-    std::vector<Candidate> candidates_;
-    std::vector<Observation> scratch_;
-    window::LmSummary last_;
-    int iterations_ = 0;
-};
-
-void Batch::update_blocks() {
-    blocks_.resize(problem_.X.size());
-    for (std::size_t j = 0; j < blocks_.size(); ++j) {
-        const Eigen::Index row = 3 * static_cast<Eigen::Index>(j);
-        blocks_[j] = Sigma_.block<3, 3>(row, row);
-    }
+const window::ViewBlock& Batch::block(const Candidate& candidate) const {
+    if (candidate.on_path >= 0) return path_->view(static_cast<std::size_t>(candidate.on_path));
+    return problem_.views[static_cast<std::size_t>(candidate.view)];
 }
 
-/// Finds a first pose for every view that has none; true if any view was added.
-bool Batch::start_missing_views() {
-    bool added = false;
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-        Candidate& candidate = candidates_[k];
-        if (candidate.view >= 0) continue;
-        TrackerOptions options = options_;
-        options.seed += k;
-        const StartPose start = find_start(problem_.camera, model(), candidate.observations, std::nullopt,
-                                           problem_.noise_factor, options, scratch_);
-        candidate.reason = start.reason;
-        if (start.reason != Reason::none) continue;
-        window::ViewBlock view(problem_.landmarks());
-        view.stamp_ns = candidate.stamp_ns;
-        view.state.T_camera_target = start.poses.best.T_camera_target;
-        for (const Observation& o : candidate.observations)
-            view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
-        candidate.view = static_cast<int>(problem_.views.size());
-        problem_.views.push_back(std::move(view));
-        added = true;
+/// Of a pose, with what is not known of the model and of the range finder.
+Mat66 Batch::covariance(const Candidate& candidate) const {
+    Mat66 covariance;
+    if (candidate.on_path >= 0) {
+        covariance = path_covariances_[static_cast<std::size_t>(candidate.on_path)];
+    } else {
+        MatX Yt(Sigma_.rows(), window::ViewState::kDim);
+        MatX SigmaYt = Yt;
+        covariance = window::state_covariance(block(candidate), problem_.X, Sigma_, problem_.noise_factor, Yt, SigmaYt);
     }
-    return added;
+    if (bias_variance_ > 0.0) {
+        const Vec6& rate = bias_pose_rate_[static_cast<std::size_t>(&candidate - candidates_.data())];
+        covariance += bias_variance_ * rate * rate.transpose();
+    }
+    return covariance;
 }
 
-/// How much wider than its own threshold the loss must begin, so that it takes in what the wrong model does to inliers
-/// (90 % point).
-double Batch::widest_loss() {
-    std::vector<double> ratios;
-    for (const Candidate& candidate : candidates_) {
-        if (candidate.view < 0) continue;
-        const SE3& T = problem_.views[static_cast<std::size_t>(candidate.view)].state.T_camera_target;
-        inflate(problem_.camera, model(), T, 1.0, candidate.observations, scratch_);
-        for (std::size_t i = 0; i < scratch_.size(); ++i) {
-            Vec2 z;
-            if (!problem_.camera.project(T * problem_.X[static_cast<std::size_t>(scratch_[i].landmark)], z)) continue;
-            const Vec2 r = z - scratch_[i].z;
-            if (r.dot(scratch_[i].covariance.inverse() * r) > options_.loss_threshold) continue;
-            ratios.push_back(r.dot(candidate.observations[i].covariance.inverse() * r) / options_.loss_threshold);
-        }
-    }
-    if (ratios.empty()) return 1.0;
-    const auto high = ratios.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(ratios.size() - 1));
-    std::nth_element(ratios.begin(), high, ratios.end());
-    return std::max(1.0, *high);
-}
-
-/// Graduated non-convexity: solves, measures the factors, narrows the loss by four, until all have settled.
-void Batch::graduate(double mu) {
-    for (int round = 0; round < kGraduations; ++round) {
-        problem_.loss.threshold = mu * options_.loss_threshold;
-        last_ = window::levenberg_marquardt(problem_, {.max_iterations = mu > 1.0 ? 6 : 50}, workspace_);
-        iterations_ += last_.iterations;
-        if (!last_.ok || !window::assemble_data(problem_, 0.0, workspace_)) return;
-        H_data_ = workspace_.S;
-        g_data_ = workspace_.g;
-        window::scale_and_add_prior(problem_, problem_.X, workspace_);
-        workspace_.llt.compute(workspace_.S);
-        const double determined = window::structure_covariance(problem_, workspace_, Sigma_);
-        update_blocks();
-        const double noise = problem_.noise_factor;
-        const double prior = problem_.prior_factors.believed;
-        window::update_noise_factor(problem_, determined);
-        if (mu == 1.0) window::update_prior_factors(problem_, H_data_, g_data_, problem_.X, workspace_);
-        const double change = std::max(std::abs(problem_.noise_factor / noise - 1.0),
-                                       std::abs(problem_.prior_factors.believed / prior - 1.0));
-        if (mu == 1.0 && change < kFactorChange) return;
-        mu = std::max(1.0, 0.25 * mu);
-    }
-}
-
-/// Tries every view from its mirror image and from a fresh consensus on the present model; true if one of them costs
-/// less.
-bool Batch::take_second_look() {
-    bool moved = false;
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-        const Candidate& candidate = candidates_[k];
-        if (candidate.view < 0) continue;
-        window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate.view)];
-        SE3& T = view.state.T_camera_target;
-        TrackerOptions options = options_;
-        options.seed += k + 7919;
-        const StartPose fresh = find_start(problem_.camera, model(), candidate.observations, std::nullopt,
-                                           problem_.noise_factor, options, scratch_);
-        const SE3 starts[] = {pnp::mirrored(T, problem_.X, candidate.observations), fresh.poses.best.T_camera_target,
-                              fresh.poses.other.T_camera_target};
-        for (const SE3& start : starts) {
-            const pnp::RefineResult other =
-                pnp::refine(start, problem_.X, candidate.observations, problem_.camera, problem_.told_loss());
-            if (!other.ok || !(cost(view, other.T_camera_target) < cost(view, T) - 1e-3 * problem_.noise_factor))
-                continue;
-            T = other.T_camera_target;
-            moved = true;
-        }
-    }
-    return moved;
-}
-
-Estimate Batch::estimate(const Candidate& candidate) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+Estimate Batch::estimate(const Candidate& candidate) const {
     Estimate e;
     e.stamp_ns = candidate.stamp_ns;
     e.dropped = candidate.dropped;
-    e.status = Status::lost;
-    e.reason = candidate.reason;
-    e.T_camera_target = {Mat33::Constant(nan), Vec3::Constant(nan)};
-    e.covariance.setConstant(nan);
-    if (candidate.view < 0 || !last_.ok) {
-        if (e.reason == Reason::none) e.reason = Reason::diverged;
-        return e;
-    }
-    const window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate.view)];
-    MatX Yt(Sigma_.rows(), window::ViewState::kDim);
-    MatX SigmaYt = Yt;
+    if (candidate.view < 0 || !last_.ok)
+        return without_pose(e, Status::lost, candidate.reason == Reason::none ? Reason::diverged : candidate.reason);
+    const window::ViewBlock& view = block(candidate);
     e.status = Status::tracking;
     e.reason =
         std::max(problem_.noise_factor, problem_.prior_factors.likely) > kAlarmFactor ? Reason::alarm : Reason::none;
     e.T_camera_target = view.state.T_camera_target;
-    e.covariance = window::state_covariance(view, problem_.X, Sigma_, problem_.noise_factor, Yt, SigmaYt);
+    e.covariance = covariance(candidate);
     double squares = 0.0;
     for (const window::Measurement& m : view.measurements) {
         Vec2 z;
@@ -228,30 +60,39 @@ Estimate Batch::estimate(const Candidate& candidate) {
 
 Refinement Batch::result() {
     Refinement refinement;
+    if (path_) path_covariances_ = path_->covariances(problem_, Sigma_);
     for (const Candidate& candidate : candidates_) refinement.estimates.push_back(estimate(candidate));
-    refinement.X = problem_.X;
-    refinement.covariance = Sigma_;
-    if (last_.ok) window::add_gauge_curvature(problem_.X, refinement.covariance);
+    const std::size_t landmarks = problem_.X.size() - (options_.range_to_origin ? 1 : 0);
+    refinement.X.assign(problem_.X.begin(), problem_.X.begin() + static_cast<std::ptrdiff_t>(landmarks));
+    MatX Sigma = Sigma_;
+    if (bias_variance_ > 0.0) Sigma += bias_variance_ * bias_rate_ * bias_rate_.transpose();
+    if (last_.ok) window::add_gauge_curvature(problem_.X, Sigma);
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(landmarks);
+    refinement.covariance = Sigma.topLeftCorner(n, n);
     refinement.noise_factor = problem_.noise_factor;
     refinement.prior_factor = problem_.prior_factors.likely;
     refinement.prior_factor_believed = problem_.prior_factors.believed;
-    refinement.cost = last_.cost;
+    refinement.cost = path_ ? cost_without_motion() : last_.cost;
     refinement.iterations = iterations_;
     refinement.converged = last_.converged;
+    refinement.ranges_believed = believed_;
+    refinement.ranges_refused = refused_;
+    refinement.range_bias_m = bias_m_;
+    refinement.range_bias_sigma_m = std::sqrt(bias_variance_);
     return refinement;
 }
 
-}  // namespace
-
 Refinement refine(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, std::span<const BatchView> views,
-                  const TrackerOptions& options) {
+                  const TrackerOptions& options, const BatchReadings& readings) {
     validate(camera);
     validate(options);
-    if (X0.size() < 4)
-        throw std::invalid_argument("landmarks: got " + std::to_string(X0.size()) +
-                                    ", expected at least 4 (a pose needs them)");
-    Batch batch(camera, X0, P0, options);
+    require(X0.size() >= 4, "landmarks", std::to_string(X0.size()), "at least 4 (a pose needs them)");
+    std::vector<Vec3> X(X0.begin(), X0.end());
+    MatX P = P0;
+    if (options.range_to_origin) add_origin(X, P);
+    Batch batch(camera, X, P, options);
     for (const BatchView& view : views) batch.add(view);
+    batch.add(readings);
     return batch.solve();
 }
 

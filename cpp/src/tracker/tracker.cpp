@@ -25,15 +25,6 @@ constexpr double kDecisiveShare = 0.75;  // inliers that make a jump evident at 
 
 double turn(const SE3& a, const SE3& b) { return so3::log(a.R.transpose() * b.R).norm(); }
 
-Estimate without_pose(Estimate estimate, Status status, Reason reason) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    estimate.status = status;
-    estimate.reason = reason;
-    estimate.T_camera_target = {Mat33::Constant(nan), Vec3::Constant(nan)};
-    estimate.covariance.setConstant(nan);
-    return estimate;
-}
-
 }  // namespace
 
 struct Tracker::State {
@@ -193,7 +184,6 @@ Estimate Tracker::State::update(std::int64_t stamp_ns, std::span<const Observati
     Estimate estimate;
     estimate.stamp_ns = stamp_ns;
     estimate.resets = resets;
-    estimate.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
     const std::span<const Observation> taken = observations.first(std::min(observations.size(), std::size_t{1} << 20));
     estimate.dropped = sanitise(taken, static_cast<int>(landmarks), clean);
     if (stamp_is_stray(stamp_ns))
@@ -226,28 +216,18 @@ Tracker::Tracker(const Camera& camera, std::span<const Vec3> X0, const MatX& P0,
     require(X0.size() >= 4, "landmarks", std::to_string(X0.size()), "at least 4 (a pose needs them)");
     std::vector<Vec3> X(X0.begin(), X0.end());
     MatX P = P0;
-    if (options.range_to_origin) {  // one more landmark, known exactly: it is the origin of the told frame
-        X.emplace_back(Vec3::Zero());
-        P = MatX::Zero(P0.rows() + 3, P0.cols() + 3);
-        P.topLeftCorner(P0.rows(), P0.cols()) = P0;
-    }
+    if (options.range_to_origin) add_origin(X, P);
     state_ = std::make_unique<State>(camera, X, P, options);
 }
 
 void Tracker::add_length(int a, int b, double length_m, double sigma_m) {
-    const int n = static_cast<int>(state_->landmarks);
-    require(a >= 0 && b >= 0 && a < n && b < n && a != b, "length between",
-            std::to_string(a) + " and " + std::to_string(b), "two landmarks of " + std::to_string(n));
-    require_positive(length_m, "length_m");
-    require_positive(sigma_m, "sigma_m");
+    require_length({a, b, length_m, sigma_m}, static_cast<int>(state_->landmarks));
     state_->structure.add_length({a, b, length_m, sigma_m});
 }
 
 void Tracker::add_range(std::int64_t stamp_ns, double range_m, double sigma_m, int landmark) {
-    const int n = static_cast<int>(state_->landmarks);
-    require((landmark == kOrigin && state_->options.range_to_origin) || (landmark >= 0 && landmark < n), "range to",
-            std::to_string(landmark), "a landmark, or the origin with the option range_to_origin");
-    state_->readings.add_range(stamp_ns, {landmark == kOrigin ? n : landmark, range_m, sigma_m});
+    const int number = range_landmark(landmark, static_cast<int>(state_->landmarks), state_->options.range_to_origin);
+    state_->readings.add_range(stamp_ns, {number, range_m, sigma_m});
     state_->structure.expect_ranges();
 }
 
@@ -271,6 +251,15 @@ Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
 Estimate Tracker::update(std::int64_t stamp_ns, std::span<const Observation> observations) noexcept {
     return state_->update(stamp_ns, observations);
+}
+
+Estimate Tracker::predict(std::int64_t stamp_ns) const noexcept {
+    Estimate estimate;
+    estimate.stamp_ns = stamp_ns;
+    estimate.resets = state_->resets;
+    if (state_->status == Status::acquiring || state_->status == Status::lost)
+        return without_pose(estimate, state_->status, Reason::none);
+    return state_->coast.predict(estimate, state_->options.coast_limit_s);
 }
 
 std::span<const Vec3> Tracker::landmarks() const noexcept {

@@ -3,7 +3,7 @@
 """labels.jsonl: every action is one line that is on the disk before it is shown; the last word on a frame holds.
 
 Nothing is rewritten while a person works, so a kill at any moment loses at most the line that was being written.
-docs/files.md section 14.
+docs/files.md section 17.
 """
 
 import errno

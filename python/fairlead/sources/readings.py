@@ -15,16 +15,17 @@ Reading = RangeReading | AttitudeReading
 
 @dataclass(kw_only=True)
 class SensorReadings:
-    """Ranges and attitudes of a recording in the order of their stamps; each is told before the first view after it."""
+    """Ranges and attitudes of a recording, those that can be used; each is told before the first view after it."""
 
     ranges: Sequence[RangeReading] = ()
     attitudes: Sequence[AttitudeReading] = ()
     _waiting: list[Reading] = field(init=False)
 
     def __post_init__(self) -> None:
+        self.ranges = tuple(filter(_usable, self.ranges))
+        self.attitudes = tuple(filter(_usable, self.attitudes))
         readings: list[Reading] = [*self.ranges, *self.attitudes]
-        usable = [each for each in readings if _usable(each)]
-        self._waiting = sorted(usable, key=lambda each: each.stamp_ns, reverse=True)
+        self._waiting = sorted(readings, key=lambda each: each.stamp_ns, reverse=True)
 
     def tell(self, tracker: Tracker, view: View) -> None:
         """Everything up to the view's stamp. Raises ValueError for a landmark that the target does not have."""

@@ -18,8 +18,14 @@ class Chain {
 
     /// Forgets the motion, keeps what is known of the shape.
     void restart() noexcept;
+    /// Nothing is known, of the motion or of the shape.
+    void clear() noexcept;
     /// The motion dt > 0 later.
     void predict(double dt, double density) noexcept;
+    /// Less is known of the motion: as if the last dt had had this density besides.
+    void loosen(double dt, double density) noexcept;
+    /// Against time: what is known of the motion dt > 0 earlier from what is known now.
+    void retrodict(double dt, double density) noexcept;
     /// Brings the slice to X, which the functions below then mean.
     void set_model(std::span<const Vec3> X) noexcept;
     /// Most likely motion for that model.
@@ -27,6 +33,10 @@ class Chain {
     /// Gradient with respect to the motion alone; its Hessian is motion_information().
     [[nodiscard]] State motion_gradient(const State& n) const noexcept;
     [[nodiscard]] const StateSquare& motion_information() const noexcept { return nn_; }
+    /// d^2 E / du dn, in the slice's coordinates.
+    [[nodiscard]] const MatX& coupling() const noexcept { return yn_; }
+    /// The same with respect to X, at the model that was set.
+    void pull_back(MatX& coupling) noexcept { slice_.pull_back(coupling); }
 
     /// Derivatives at that model and n; both triangles.
     void linearise(const State& n) noexcept;
@@ -46,6 +56,9 @@ class Chain {
     VecX g_X;
 
   private:
+    void substitute(const StateSquare& M) noexcept;
+    void diffuse(const StateSquare& L) noexcept;
+
     int axes_;
     window::Slice slice_;
     window::GaugeBasis rate_t_;

@@ -16,7 +16,10 @@ class DensityBank {
   public:
     DensityBank(double told, int axes);
 
-    void restart() noexcept { started_ = false; }
+    void restart() noexcept {
+        started_ = false;
+        density_ = told_;
+    }
     /// A view's own position [m] with its covariance, dt after the last.
     void observe(double dt, const Vec3& position, const Mat33& covariance) noexcept;
     [[nodiscard]] double density() const noexcept { return density_; }
@@ -25,10 +28,11 @@ class DensityBank {
     static constexpr int kFilters = 7;
     struct Filter {
         double density = 0.0;
-        double log_likelihood = 0.0;
+        double log_likelihood = 0.0, recent = 0.0;  ///< over the long and over the short memory
         State mean;
         StateSquare covariance;
     };
+    [[nodiscard]] double mean(double Filter::* log_likelihood) const noexcept;
     void start(const Vec3& position, const Mat33& covariance) noexcept;
 
     int axes_;

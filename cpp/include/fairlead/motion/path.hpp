@@ -20,7 +20,9 @@ namespace fairlead::motion {
 /// linearised at a poor model would hold on to it. docs/motion.md section 3.
 class Path {
   public:
-    Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge gauge);
+    static constexpr std::size_t kKept = 1024;  ///< views of the past that are gone through again
+
+    Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge gauge, std::size_t kept = kKept);
 
     void restart() noexcept;
     void advance(std::int64_t stamp_ns, std::span<const Vec3> X, const std::optional<Attitude>& attitude) noexcept;
@@ -40,12 +42,27 @@ class Path {
     /// What the path says of the model's shape.
     void marginal(MatX& Lambda, VecX& eta) noexcept { chain_.marginal(Lambda, eta); }
 
+    /// A batch instead, for which `kept` must have room: views in the order of their stamps, each linearised and with a
+    /// pose of its own. False, the view left as it was, if nothing ties it to the path.
+    [[nodiscard]] bool append(window::ViewBlock& view, const std::optional<Attitude>& attitude,
+                              const window::Problem& problem) noexcept;
+    /// All of them once backwards and once forwards, poses and motions fitted to the model as it is.
+    void smooth(const window::Problem& problem) noexcept;
+    /// Every range of theirs made shorter.
+    void move_ranges(double by_m) noexcept;
+    /// Of their poses, the structure's uncertainty in them; docs/motion.md eq. (14). Allocates.
+    [[nodiscard]] std::vector<Mat66> covariances(const window::Problem& problem, const MatX& Sigma);
+    [[nodiscard]] const window::ViewBlock& view(std::size_t i) const noexcept {
+        return past_[(first_ + i) % past_.size()].view;
+    }
+
     /// d |centroid in the camera| / dt [m/s].
     [[nodiscard]] double range_rate() const noexcept;
     [[nodiscard]] double density() const noexcept { return bank_.density(); }
 
   private:
     static constexpr int kMaxJoint = 6 + kMaxState;
+    static constexpr double kMaxInterval = 10.0;  ///< [s] without a view after which the motion begins anew
     using Joint = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoint, 1>;
     using JointSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoint, kMaxJoint>;
 
@@ -72,8 +89,18 @@ class Path {
     /// The position that the view alone gives, at the tie as last measured; false if it gives none.
     [[nodiscard]] bool own_position(const window::ViewBlock& view, double noise_factor, Vec3& position,
                                     Mat33& covariance) const noexcept;
+    /// What is known besides of the motion of a view that is eliminated: information, and coupling to X.
+    struct Later {
+        StateSquare nn;
+        MatX Xn;
+    };
+    [[nodiscard]] bool eliminate(const Chain& chain, const window::ViewBlock& view, std::span<const Vec3> X,
+                                 double noise_factor, const State& n, const Later* later, MatX& S, VecX& g) noexcept;
+    static void forward(Chain& chain, const Past& past) noexcept;
+    [[nodiscard]] std::vector<Later> later_knowledge(const window::Problem& problem);
     void retrace(Chain& chain, Past& past, const window::Problem& problem) noexcept;
     void look_back(std::size_t i) noexcept;
+    void catch_up() noexcept;
     void go_through_some(const window::Problem& problem) noexcept;
     void keep(window::ViewBlock& view, const window::Problem& problem) noexcept;
     [[nodiscard]] Past& past(std::size_t i) noexcept { return past_[(first_ + i) % past_.size()]; }
@@ -95,6 +122,7 @@ class Path {
     std::int64_t stamp_ns_ = 0;
     bool started_ = false;
     double interval_s_ = 0.0, density_ = 0.0;
+    double loosened_ = 0.0;  ///< density that the chain was given lately
 
     State n_;
     Vec3 residual_ = Vec3::Zero();  ///< of the tie

@@ -37,7 +37,8 @@ struct Estimate {
     Status status = Status::acquiring;
     Reason reason = Reason::none;
     SE3 T_camera_target;  ///< in the frame of the prior model
-    Mat66 covariance;     ///< of xi in T Exp(xi), xi = (rho, phi) [m, rad], the model's uncertainty included
+    /// Of xi in T Exp(xi), xi = (rho, phi) [m, rad], the model's uncertainty included.
+    Mat66 covariance = Mat66::Constant(std::numeric_limits<double>::quiet_NaN());
     int inliers = 0;
     int dropped = 0;  ///< observations that were unusable (NaN, unknown, duplicate, no covariance)
     double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();  ///< over the inliers
@@ -47,5 +48,8 @@ struct Estimate {
 
     [[nodiscard]] bool ok() const noexcept { return status == Status::tracking || status == Status::coasting; }
 };
+
+/// The same without pose and covariance: NaN.
+[[nodiscard]] Estimate without_pose(Estimate estimate, Status status, Reason reason) noexcept;
 
 }  // namespace fairlead

@@ -8,6 +8,9 @@
 
 namespace fairlead {
 
+/// In the place of a landmark's number: the target's origin.
+inline constexpr int kOrigin = -1;
+
 struct TrackerOptions {
     int max_views =
         256;  ///< keyframes kept and relinearised; more cost time, fewer lose accuracy while the model is poor

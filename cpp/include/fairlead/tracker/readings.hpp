@@ -6,10 +6,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "fairlead/motion/tie.hpp"
+#include "fairlead/tracker/options.hpp"
 #include "fairlead/tracker/range_gate.hpp"
-#include "fairlead/window/state.hpp"
+#include "fairlead/window/problem.hpp"
 
 namespace fairlead {
 
@@ -17,6 +19,15 @@ namespace fairlead {
 void require(bool good, const std::string& what, const std::string& got, const std::string& expected);
 void require_positive(double value, const std::string& what);
 [[nodiscard]] bool is_rotation(const Mat33& R) noexcept;
+void require_attitude(const motion::Attitude& attitude);
+void require_length(const window::LengthMeasurement& length, int landmarks);
+/// The number of the landmark that a range is to; kOrigin is one more than there are, if it may be.
+[[nodiscard]] int range_landmark(int landmark, int landmarks, bool to_origin);
+/// One more landmark, known exactly: the origin of the told frame.
+void add_origin(std::vector<Vec3>& X, MatX& P);
+
+inline constexpr double kMaxRangeAge = 0.5;     ///< [s] between a range and the view it is used with
+inline constexpr double kMaxAttitudeAge = 0.1;  ///< [s] the same of an attitude
 
 /// What other sensors said since the last view.
 class Readings {

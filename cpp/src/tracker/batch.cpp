@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+// All views at once from images: starts, graduated loss, factors, second looks.
+#include "batch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fairlead/tracker/sanitise.hpp"
+
+namespace fairlead {
+namespace {
+
+constexpr int kGraduations = 12;        // at most, of loss width and variance factors
+constexpr double kFactorChange = 0.01;  // relative change of the factors that counts as settled
+constexpr int kSecondLooks = 3;         // rounds in which views are tried from other poses
+
+}  // namespace
+
+Batch::Batch(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options)
+    : options_(options), workspace_(static_cast<int>(X0.size())), Sigma_(P0) {
+    problem_.camera = camera;
+    problem_.prior = window::make_prior(X0, P0);
+    problem_.X.assign(X0.begin(), X0.end());
+    scratch_.reserve(X0.size());
+    update_blocks();
+}
+
+void Batch::add(const BatchView& view) {
+    Candidate candidate;
+    candidate.stamp_ns = view.stamp_ns;
+    candidate.observations.reserve(problem_.X.size());
+    const int landmarks = problem_.landmarks() - (options_.range_to_origin ? 1 : 0);
+    candidate.dropped = sanitise(view.observations, landmarks, candidate.observations);
+    candidates_.push_back(std::move(candidate));
+}
+
+Refinement Batch::solve() {
+    start_missing_views();
+    if (!problem_.views.empty()) graduate(widest_loss());
+    for (int round = 0; round < kSecondLooks && !problem_.views.empty(); ++round) {
+        const bool added = start_missing_views();
+        const bool moved = take_second_look();
+        if (!added && !moved) break;
+        graduate(1.0);
+    }
+    if (last_.ok && options_.motion != motion::Kind::none) start_path();
+    if (last_.ok && range_bias_sigma_m_ > 0.0 && believed_ > 0) estimate_bias();
+    return result();
+}
+
+/// Covariance of the landmarks at the system that was assembled; returns the directions that the data determine.
+double Batch::measure_structure() {
+    window::scale_and_add_prior(problem_, problem_.X, workspace_);
+    workspace_.llt.compute(workspace_.S);
+    const double determined = window::structure_covariance(problem_, workspace_, Sigma_);
+    update_blocks();
+    return determined;
+}
+
+void Batch::update_blocks() {
+    blocks_.resize(problem_.X.size());
+    for (std::size_t j = 0; j < blocks_.size(); ++j) {
+        const Eigen::Index row = 3 * static_cast<Eigen::Index>(j);
+        blocks_[j] = Sigma_.block<3, 3>(row, row);
+    }
+}
+
+/// Finds a first pose for every view that has none; true if any view was added.
+bool Batch::start_missing_views() {
+    bool added = false;
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+        Candidate& candidate = candidates_[k];
+        if (candidate.view >= 0) continue;
+        TrackerOptions options = options_;
+        options.seed += k;
+        const StartPose start = find_start(problem_.camera, model(), candidate.observations, std::nullopt,
+                                           problem_.noise_factor, options, scratch_);
+        candidate.reason = start.reason;
+        if (start.reason != Reason::none) continue;
+        window::ViewBlock view(problem_.landmarks());
+        view.stamp_ns = candidate.stamp_ns;
+        view.state.T_camera_target = start.poses.best.T_camera_target;
+        view.ranges = candidate.ranges;
+        view.share = candidate.share;
+        for (const Observation& o : candidate.observations)
+            view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
+        candidate.view = static_cast<int>(problem_.views.size());
+        problem_.views.push_back(std::move(view));
+        added = true;
+    }
+    return added;
+}
+
+/// How much wider than its own threshold the loss must begin, so that it takes in what the wrong model does to inliers
+/// (90 % point).
+double Batch::widest_loss() {
+    std::vector<double> ratios;
+    for (const Candidate& candidate : candidates_) {
+        if (candidate.view < 0) continue;
+        const SE3& T = problem_.views[static_cast<std::size_t>(candidate.view)].state.T_camera_target;
+        inflate(problem_.camera, model(), T, 1.0, candidate.observations, scratch_);
+        for (std::size_t i = 0; i < scratch_.size(); ++i) {
+            Vec2 z;
+            if (!problem_.camera.project(T * problem_.X[static_cast<std::size_t>(scratch_[i].landmark)], z)) continue;
+            const Vec2 r = z - scratch_[i].z;
+            if (r.dot(scratch_[i].covariance.inverse() * r) > options_.loss_threshold) continue;
+            ratios.push_back(r.dot(candidate.observations[i].covariance.inverse() * r) / options_.loss_threshold);
+        }
+    }
+    if (ratios.empty()) return 1.0;
+    const auto high = ratios.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(ratios.size() - 1));
+    std::nth_element(ratios.begin(), high, ratios.end());
+    return std::max(1.0, *high);
+}
+
+/// Graduated non-convexity: solves, measures the factors, narrows the loss by four, until all have settled.
+void Batch::graduate(double mu) {
+    for (int round = 0; round < kGraduations; ++round) {
+        problem_.loss.threshold = mu * options_.loss_threshold;
+        last_ = window::levenberg_marquardt(problem_, {.max_iterations = mu > 1.0 ? 6 : 50}, workspace_);
+        iterations_ += last_.iterations;
+        if (!last_.ok || !window::assemble_data(problem_, 0.0, workspace_)) return;
+        H_data_ = workspace_.S;
+        g_data_ = workspace_.g;
+        const double determined = measure_structure();
+        const double noise = problem_.noise_factor;
+        const double prior = problem_.prior_factors.believed;
+        window::update_noise_factor(problem_, determined);
+        if (mu == 1.0) window::update_prior_factors(problem_, H_data_, g_data_, problem_.X, workspace_);
+        const double change = std::max(std::abs(problem_.noise_factor / noise - 1.0),
+                                       std::abs(problem_.prior_factors.believed / prior - 1.0));
+        if (mu == 1.0 && change < kFactorChange) return;
+        mu = std::max(1.0, 0.25 * mu);
+    }
+}
+
+/// Tries every view from its mirror image and from a fresh consensus on the present model; true if one of them costs
+/// less.
+bool Batch::take_second_look() {
+    bool moved = false;
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+        const Candidate& candidate = candidates_[k];
+        if (candidate.view < 0) continue;
+        window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate.view)];
+        SE3& T = view.state.T_camera_target;
+        TrackerOptions options = options_;
+        options.seed += k + 7919;
+        const StartPose fresh = find_start(problem_.camera, model(), candidate.observations, std::nullopt,
+                                           problem_.noise_factor, options, scratch_);
+        const SE3 starts[] = {pnp::mirrored(T, problem_.X, candidate.observations), fresh.poses.best.T_camera_target,
+                              fresh.poses.other.T_camera_target};
+        for (const SE3& start : starts) {
+            const pnp::RefineResult other =
+                pnp::refine(start, problem_.X, candidate.observations, problem_.camera, problem_.told_loss());
+            if (!other.ok || !(cost(view, other.T_camera_target) < cost(view, T) - 1e-3 * problem_.noise_factor))
+                continue;
+            T = other.T_camera_target;
+            moved = true;
+        }
+    }
+    return moved;
+}
+
+}  // namespace fairlead

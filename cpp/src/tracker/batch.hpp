@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fairlead/motion/path.hpp"
+#include "fairlead/refine.hpp"
+#include "fairlead/tracker/start_pose.hpp"
+#include "fairlead/window/covariance.hpp"
+#include "fairlead/window/levenberg_marquardt.hpp"
+
+namespace fairlead {
+
+/// One view of the batch and where it stands in the problem (-1: not solved).
+struct Candidate {
+    std::vector<Observation> observations;
+    std::int64_t stamp_ns = 0;
+    std::vector<window::RangeMeasurement> ranges;
+    std::optional<motion::Attitude> attitude;
+    double share = 1.0;  ///< of what an independent view would say
+    int dropped = 0;
+    int view = -1;
+    int on_path = -1;  ///< its place on the path, where there is one
+    Reason reason = Reason::none;
+};
+
+/// All views of a flight and their joint solution, docs/estimator.md section 5.
+class Batch {
+  public:
+    /// X0 and P0 with the origin as one more landmark, where ranges to it will come.
+    Batch(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options);
+
+    void add(const BatchView& view);
+    /// After the views. Throws std::invalid_argument for readings that mean nothing.
+    void add(const BatchReadings& readings);
+    Refinement solve();
+
+  private:
+    void share_information();
+    void add_ranges(std::vector<BatchReadings::Range> ranges);
+    void add_attitudes(std::span<const BatchReadings::Attitude> attitudes);
+    [[nodiscard]] std::vector<Candidate*> in_time();
+
+    bool start_missing_views();
+    bool take_second_look();
+    double widest_loss();
+    void graduate(double mu);
+    double measure_structure();
+    void update_blocks();
+
+    void start_path();
+    [[nodiscard]] double cost_without_motion();
+    void settle_on_path();
+    void solve_again();
+    void estimate_bias();
+    void move_ranges(double by_m);
+    [[nodiscard]] double range_score() const;
+
+    Refinement result();
+    Estimate estimate(const Candidate& candidate) const;
+    [[nodiscard]] const window::ViewBlock& block(const Candidate& candidate) const;
+    [[nodiscard]] Mat66 covariance(const Candidate& candidate) const;
+
+    [[nodiscard]] UncertainModel model() const { return {problem_.X, blocks_}; }
+    [[nodiscard]] double cost(const window::ViewBlock& view, const SE3& T) const {
+        return window::view_cost(problem_.camera, problem_.X, problem_.told_loss(), problem_.noise_factor, T, view);
+    }
+
+    TrackerOptions options_;
+    window::Problem problem_;
+    window::Workspace workspace_;
+    MatX Sigma_, H_data_;
+    VecX g_data_;
+    std::vector<Mat33> blocks_;
+    std::vector<Candidate> candidates_;
+    std::vector<Observation> scratch_;
+    window::LmSummary last_;
+    int iterations_ = 0;
+    int believed_ = 0, refused_ = 0;
+
+    std::optional<motion::Path> path_;
+    std::vector<Mat66> path_covariances_;
+
+    double range_bias_sigma_m_ = 0.0;
+    double bias_m_ = 0.0, bias_variance_ = 0.0;
+    VecX bias_rate_;                    ///< d X / d bias
+    std::vector<Vec6> bias_pose_rate_;  ///< d xi / d bias, by candidate
+};
+
+}  // namespace fairlead

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+// The batch on a smooth path, and the constant error of its range finder.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "batch.hpp"
+
+namespace fairlead {
+namespace {
+
+constexpr int kRounds = 30;           // of path and model in turn, at most
+constexpr double kSettled = 1e-6;     // [sigma^2] step of the model that ends them
+constexpr double kTolerance = 1e-12;  // of a solution whose derivative is wanted
+
+Eigen::Map<const VecX> stacked(const std::vector<Vec3>& X) {
+    return {X.front().data(), 3 * static_cast<Eigen::Index>(X.size())};
+}
+
+}  // namespace
+
+/// Views that the path can take go there, in the order of their stamps; the others stay.
+void Batch::start_path() {
+    std::vector<Vec3> X_ref;
+    for (Eigen::Index j = 0; j < problem_.prior->mean.size(); j += 3)
+        X_ref.emplace_back(problem_.prior->mean.segment<3>(j));
+    const window::Gauge gauge = believed_ > 0 ? window::Gauge::rigid : window::Gauge::similarity;
+    path_.emplace(options_.motion, options_.jerk_density_m_s25, X_ref, gauge,
+                  std::max<std::size_t>(1, problem_.views.size()));
+    problem_.path.emplace(X_ref, gauge);
+    int on_path = 0;
+    std::vector<window::ViewBlock> others;
+    for (Candidate* candidate : in_time()) {
+        if (candidate->view < 0) continue;
+        window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate->view)];
+        if (path_->append(view, candidate->attitude, problem_)) {
+            candidate->on_path = on_path++;
+        } else {
+            candidate->view = static_cast<int>(others.size());
+            others.push_back(std::move(view));
+        }
+    }
+    problem_.views = std::move(others);
+    settle_on_path();
+}
+
+/// Path and model in turn: the path at the model as it is, then the model with poses and motions eliminated.
+void Batch::settle_on_path() {
+    for (int round = 0; round < kRounds; ++round) {
+        path_->smooth(problem_);
+        path_->marginal(workspace_.product, workspace_.D);
+        problem_.path->replace(workspace_.product, workspace_.D, problem_.noise_factor);
+        const VecX before = stacked(problem_.X);
+        last_ = window::levenberg_marquardt(problem_, {.tolerance = kTolerance}, workspace_);
+        iterations_ += last_.iterations;
+        if (!last_.ok || !window::assemble_data(problem_, 0.0, workspace_)) return;
+        measure_structure();
+        const VecX step = workspace_.llt.matrixU() * (stacked(problem_.X) - before);
+        last_.converged = step.squaredNorm() < kSettled;
+        if (last_.converged) break;
+    }
+    path_->smooth(problem_);
+}
+
+/// Of images, readings and prior.
+double Batch::cost_without_motion() {
+    std::vector<SE3> T;
+    double on_path = 0.0;
+    for (const Candidate& candidate : candidates_)
+        if (candidate.on_path >= 0) on_path += cost(block(candidate), block(candidate).state.T_camera_target);
+    for (const window::ViewBlock& view : problem_.views) T.push_back(view.state.T_camera_target);
+    problem_.path.reset();
+    return window::posterior_cost(problem_, problem_.X, T) + 0.5 * on_path / problem_.noise_factor;
+}
+
+void Batch::solve_again() {
+    if (path_) return settle_on_path();
+    last_ = window::levenberg_marquardt(problem_, {.tolerance = kTolerance}, workspace_);
+    iterations_ += last_.iterations;
+    if (last_.ok && window::assemble_data(problem_, 0.0, workspace_)) measure_structure();
+}
+
+/// Takes the bias of the range finder for larger by so much.
+void Batch::move_ranges(double by_m) {
+    if (path_) path_->move_ranges(by_m);
+    for (window::ViewBlock& view : problem_.views)
+        for (window::RangeMeasurement& range : view.ranges) range.range_m -= by_m;
+}
+
+/// d E / d bias at the present solution, without its prior.
+double Batch::range_score() const {
+    double score = 0.0;
+    for (const Candidate& candidate : candidates_) {
+        if (candidate.view < 0) continue;
+        const window::ViewBlock& view = block(candidate);
+        for (const window::RangeMeasurement& range : view.ranges) {
+            const Vec3 p = view.state.T_camera_target * problem_.X[static_cast<std::size_t>(range.landmark)];
+            score += (p.norm() - range.range_m) / (range.sigma_m * range.sigma_m);
+        }
+    }
+    return score;
+}
+
+/// The bias by one Newton step on E with all else solved for, docs/range.md eq. (5)-(6): what depends on it, and how,
+/// is seen from a second solution with another bias.
+void Batch::estimate_bias() {
+    const double step = range_bias_sigma_m_;
+    const std::vector<Vec3> X = problem_.X;
+    std::vector<SE3> T;
+    for (const Candidate& candidate : candidates_)
+        T.push_back(candidate.view < 0 ? SE3{} : block(candidate).state.T_camera_target);
+    const double score = range_score();
+    move_ranges(step);
+    solve_again();
+    if (!last_.ok) return;
+    const double curvature = std::max(0.0, (range_score() - score) / step) + 1.0 / (step * step);
+    bias_rate_ = (stacked(problem_.X) - stacked(X)) / step;
+    bias_pose_rate_.assign(candidates_.size(), Vec6::Zero());
+    for (std::size_t k = 0; k < T.size(); ++k)
+        if (candidates_[k].view >= 0)
+            bias_pose_rate_[k] = difference(T[k], block(candidates_[k]).state.T_camera_target) / step;
+    bias_m_ = -score / curvature;
+    bias_variance_ = 1.0 / curvature;
+    move_ranges(bias_m_ - step);
+    solve_again();
+}
+
+}  // namespace fairlead
