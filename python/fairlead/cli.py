@@ -17,7 +17,6 @@ import tyro
 from tyro.conf import subcommand
 
 from fairlead.config import (
-    AnnotateConfig,
     Config,
     DemoConfig,
     EvaluateConfig,
@@ -30,6 +29,7 @@ from fairlead.config import (
     UsageError,
 )
 from fairlead.io.errors import InputError, one_line
+from fairlead.target_config import AnnotateConfig, BootstrapConfig, TargetConfig
 from fairlead.train.config import CalibrateConfig, ExportConfig, NetworkConfig, TrainConfig
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ _Command = (
     | Annotated[ExportConfig, subcommand("export")]
     | Annotated[ReproduceConfig, subcommand("reproduce")]
     | Annotated[AnnotateConfig, subcommand("annotate")]
+    | Annotated[BootstrapConfig, subcommand("bootstrap")]
 )
 
 
@@ -66,7 +67,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     before = {number: signal.signal(number, _stop) for number in (signal.SIGINT, signal.SIGTERM)}
     stopped = False
     try:
-        config: Config | NetworkConfig = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
+        config: Config | NetworkConfig | TargetConfig = tyro.cli(
+            _Command, prog="fairlead", description=_DESCRIPTION, args=arguments
+        )
         return _run(config)
     except (InputError, UsageError) as error:
         return _complain(str(error), 2)
@@ -101,7 +104,7 @@ def _complain(message: str, status: int) -> int:
     return status
 
 
-def _run(config: Config | NetworkConfig) -> int:
+def _run(config: Config | NetworkConfig | TargetConfig) -> int:
     if isinstance(config, SimulateConfig):
         return _simulate(config)
     if isinstance(config, RenderConfig):
@@ -114,6 +117,8 @@ def _run(config: Config | NetworkConfig) -> int:
         return _reproduce(config)
     if isinstance(config, AnnotateConfig):
         return _annotate(config)
+    if isinstance(config, BootstrapConfig):
+        return _bootstrap(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
@@ -184,6 +189,16 @@ def _annotate(config: AnnotateConfig) -> int:
         sys.stdout.flush()
 
     annotate(config, tell)
+    return 0
+
+
+def _bootstrap(config: BootstrapConfig) -> int:
+    from fairlead.prepare import bootstrap
+
+    made = bootstrap(config)
+    counts = f"{len(made.target.landmarks)} landmarks from {made.views} views, {made.reprojection_rms_px:.2f} px"
+    left_out = f" (too few views show {', '.join(made.left_out)})" if made.left_out else ""
+    sys.stdout.write(f"{config.output}: {counts}{left_out}\n")
     return 0
 
 

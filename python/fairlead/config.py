@@ -255,46 +255,5 @@ class ReproduceConfig:
                 raise UsageError(f"--{name}: expected a whole number >= 1, got {value}")
 
 
-@dataclass(frozen=True, kw_only=True)
-class AnnotateConfig:
-    """A page in the browser, of this machine alone: landmarks on a mesh, marks in frames, truth poses."""
-
-    folder: Positional[Path]
-    """What is annotated: mesh, camera.yaml, images/ or rgb/, target.toml if there is one; the labels go there, too."""
-    mesh: Path | None = None
-    """PLY, OBJ, STL or glTF, if there is not just one in the folder."""
-    mesh_scale: float = 1.0
-    """Metres in a unit of the mesh: 0.001 for one in millimetres."""
-    target: Path | None = None
-    """Landmarks to begin with; target.toml of the folder if not given."""
-    camera: Path | None = None
-    """Calibration; camera.yaml of the folder if not given."""
-    images: Path | None = None
-    """Folder of the frames; images/, rgb/ or the folder itself if not given."""
-    fps: float | None = None
-    """Frames per second where the images carry no stamps [1/s]; 1 if not given."""
-    port: int = 8090
-    """Of the page; 0: any that is free."""
-    show: bool = True
-    """Open the browser."""
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.mesh_scale < 1e9:
-            raise UsageError(f"--mesh-scale: expected metres in a unit of the mesh, got {self.mesh_scale}")
-        if self.fps is not None and not 0.0 < self.fps < 1e6:
-            raise UsageError(f"--fps: expected a positive number of frames per second, got {self.fps}")
-        if not 0 <= self.port < 65536:
-            raise UsageError(f"--port: expected 0 to 65535, got {self.port}")
-
-
-Config = (
-    ReproduceConfig
-    | TrackConfig
-    | RefineConfig
-    | EvaluateConfig
-    | SimulateConfig
-    | RenderConfig
-    | StudyConfig
-    | DemoConfig
-    | AnnotateConfig
-)
+_Runs = ReproduceConfig | TrackConfig | RefineConfig | EvaluateConfig | DemoConfig
+Config = _Runs | SimulateConfig | RenderConfig | StudyConfig

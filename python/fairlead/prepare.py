@@ -2,24 +2,34 @@
 # SPDX-License-Identifier: Apache-2.0
 """The meeting point before there is a target: folders and photographs to `annotate` and `bootstrap`."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 from fairlead.annotate.project import JOURNAL, Frame, Project, open_project
 from fairlead.annotate.surface import SUFFIXES as MESHES
 from fairlead.annotate.surface import Surface, load_surface
-from fairlead.config import AnnotateConfig, UsageError
+from fairlead.bootstrap import BootstrapError, Bootstrapped, bootstrap_landmarks, bootstrap_tags
+from fairlead.config import UsageError
+from fairlead.detect import detector_from_spec
 from fairlead.io.bop import is_bop
 from fairlead.io.camera import load_camera
+from fairlead.io.csv_lines import CsvWriter
 from fairlead.io.errors import InputError
-from fairlead.io.target import load_target
+from fairlead.io.observations import read_views
+from fairlead.io.target import load_target, save_target
+from fairlead.opencv.filters import write_image
 from fairlead.sources.bop import BopSource
 from fairlead.sources.image_folder import SUFFIXES as IMAGES
 from fairlead.sources.image_folder import ImageFolderSource
-from fairlead.types import Camera, Target
+from fairlead.sources.opening import open_images
+from fairlead.target_config import AnnotateConfig, BootstrapConfig
+from fairlead.types import Camera, KnownDistance, Target, View
 
 IMAGE_FOLDERS = ("images", "rgb", ".")
 DEFAULT_FPS = 1.0
+KNOWN_TO = 0.01
+"""How well a length is known where nothing is said, as a share of it [-]."""
 
 
 def annotate(config: AnnotateConfig, tell: Callable[[str], None]) -> None:
@@ -87,11 +97,14 @@ def _camera(config: AnnotateConfig) -> Camera | None:
 
 
 def _frames(config: AnnotateConfig, camera: Camera | None) -> list[Frame]:
-    folder = _image_folder(config)
+    recording = None if config.images is None or config.images.is_dir() else config.images
+    folder = config.folder / "images" if recording is not None else _image_folder(config)
     if folder is None:
         return []
     if camera is None:
         raise InputError(config.folder, "holds images and no camera.yaml: expected a calibration there, or --camera")
+    if recording is not None and not folder.exists():
+        _write_frames(recording, folder, camera, config)
     source = _source(folder, camera, config.fps)
     return [Frame(number=number, stamp_ns=stamp_ns, path=path) for number, stamp_ns, path in source.listed()]
 
@@ -108,6 +121,19 @@ def _source(folder: Path, camera: Camera, fps: float | None) -> BopSource | Imag
         return ImageFolderSource(folder, camera, fps=DEFAULT_FPS)
 
 
+def _write_frames(recording: Path, folder: Path, camera: Camera, config: AnnotateConfig) -> None:
+    """The frames of a video or bag as images with their stamps; the folder is there when all of them are."""
+    part = folder.with_name(f".{folder.name}.part")
+    shutil.rmtree(part, ignore_errors=True)
+    part.mkdir()
+    with CsvWriter(part / "stamps.csv", ("image", "stamp_ns")) as stamps:
+        for each in open_images(recording, camera, fps=config.fps, topic=None):
+            if each.frame % config.every == 0:
+                write_image(part / f"{each.frame:06d}.png", each.image)
+                stamps.write_rows([(f"{each.frame:06d}.png", each.stamp_ns)])
+    part.replace(folder)
+
+
 def _image_folder(config: AnnotateConfig) -> Path | None:
     """Where the frames are. Raises InputError for a folder that was named and is none."""
     if config.images is not None:
@@ -119,3 +145,46 @@ def _image_folder(config: AnnotateConfig) -> Path | None:
         if folder.is_dir() and any(each.suffix.lower() in IMAGES for each in folder.iterdir()):
             return folder
     return None
+
+
+def bootstrap(config: BootstrapConfig) -> Bootstrapped:
+    """Make and write a first target. Raises InputError, UsageError; what was at the output is then left alone."""
+    if (config.tag_size_m is None) == (config.distance is None):
+        raise UsageError("bootstrap: expected --tag-size-m or --distance A B LENGTH: views do not tell the size")
+    lengths = (config.tag_size_m, config.tag_sigma_m, config.distance_sigma_m, (config.distance or (0, 0, None))[2])
+    if any(length is not None and not 0.0 < length < 1e6 for length in lengths):
+        raise UsageError("bootstrap: expected lengths above 0 m")
+    camera = load_camera(config.camera)
+    views = _views(config, camera)
+    name = config.name or config.output.stem
+    try:
+        if config.tag_size_m is not None:
+            sigma_m = KNOWN_TO * config.tag_size_m if config.tag_sigma_m is None else config.tag_sigma_m
+            made = bootstrap_tags(views, camera, config.tag_size_m, sigma_m, name)
+        else:
+            assert config.distance is not None
+            a, b, length_m = config.distance
+            sigma_m = KNOWN_TO * length_m if config.distance_sigma_m is None else config.distance_sigma_m
+            distance = KnownDistance(between=(a, b), length_m=length_m, sigma_m=sigma_m)
+            made = bootstrap_landmarks(views, camera, distance, name)
+    except BootstrapError as error:
+        raise InputError(config.source, str(error)) from error
+    except ValueError as error:
+        raise UsageError(f"bootstrap: {error}") from error
+    config.output.parent.mkdir(parents=True, exist_ok=True)
+    save_target(config.output, made.target)
+    return made
+
+
+def _views(config: BootstrapConfig, camera: Camera) -> list[View]:
+    """From a table, or found in photographs, whose stamps do not matter here."""
+    if not config.source.is_dir():
+        return list(read_views(config.source))
+    if config.detector is None:
+        raise UsageError(f"{config.source} is a folder of photographs: expected --detector too")
+    try:
+        detector = detector_from_spec(config.detector, None)
+    except ValueError as error:
+        raise UsageError(f"--detector: {str(error).removeprefix('detector: ')}") from error
+    source = _source(config.source, camera, None)
+    return [detector.detect(each.image, each.frame, each.stamp_ns) for each in source]

@@ -31,6 +31,7 @@ from fairlead.opencv.markers import (
 from fairlead.opencv.pnp import MIN_POINTS, PnpSolution, epnp, ideal_pixels, ippe, refine, sqpnp
 from fairlead.opencv.pnp_views import epnp_views
 from fairlead.opencv.silhouettes import filled_triangles
+from fairlead.opencv.two_views import TwoViews, relative_pose
 
 __all__ = [
     "MIN_POINTS",
@@ -40,6 +41,7 @@ __all__ = [
     "Image",
     "Line",
     "PnpSolution",
+    "TwoViews",
     "carry_points",
     "charuco_corners",
     "chessboard_corners",
@@ -62,6 +64,7 @@ __all__ = [
     "open_capture",
     "read_image",
     "refine",
+    "relative_pose",
     "resample",
     "sqpnp",
     "warp_affine",

@@ -155,10 +155,9 @@ class LandmarksPanel:
 
         def add() -> None:
             found = self.bench.suggest(count)
-            short = "" if found >= count else ": the mesh has no more distinct corners that can be seen"
-            ui.notify(
-                f"{found} landmarks suggested{short}", type="info" if found else "warning", position="bottom-left"
-            )
+            if found < count:
+                more = "the mesh has no more distinct corners that can be seen"
+                ui.notify(f"{found} landmarks suggested: {more}", type="warning", position="bottom-left")
 
         self._shell.attempt(add)
 

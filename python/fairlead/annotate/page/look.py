@@ -7,8 +7,8 @@ body { background: #0f172a; color: #e2e8f0; }
 .nicegui-content { padding: 0; gap: 0; }
 .bar { background: #111c33; border-bottom: 1px solid #1e293b; }
 .side { background: #111c33; border-left: 1px solid #1e293b; }
-.box { background: #020617; overflow: auto; position: relative; }
-.box > div { margin: auto; }
+.box { background: #020617; overflow: auto; position: relative; display: flex; }
+.box > div { margin: auto; flex: none; }
 .box img { image-orientation: none; image-rendering: auto; cursor: crosshair; }
 .box.near img { image-rendering: pixelated; }
 .line { border-radius: 6px; cursor: pointer; padding: 3px 8px; flex-wrap: nowrap; }

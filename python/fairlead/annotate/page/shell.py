@@ -56,7 +56,7 @@ class Shell:
             ui.label("fairlead").classes("text-lg font-bold")
             ui.label(self.bench.project.name).classes("text-lg dim whitespace-nowrap")
             first: Any = self._first  # a name will do, whatever the annotation says
-            with ui.tabs(value=first, on_change=lambda: self.refresh()).classes("ml-6") as self._tabs:
+            with ui.tabs(value=first, on_change=self._tab_changed).classes("ml-6") as self._tabs:
                 ui.tab("Landmarks", icon="place")
                 ui.tab("Frames", icon="burst_mode")
                 ui.tab("Truth", icon="task_alt")
@@ -76,6 +76,11 @@ class Shell:
     def tab(self) -> str:
         """The panel that is shown."""
         return str(self._tabs.value)
+
+    def _tab_changed(self) -> None:
+        """The arrow keys are for frames, not for the tab that was clicked."""
+        ui.run_javascript("document.activeElement?.blur()")
+        self.refresh()
 
     def show(self, tab: str) -> None:
         """Show a panel."""
