@@ -4,10 +4,14 @@
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import hypothesis
 import pytest
 from jaxtyping import install_import_hook
+
+if TYPE_CHECKING:
+    from tests.clip import Clip
 
 # Every annotated shape of the package is verified while tests run; in production the annotations are free.
 install_import_hook("fairlead", "beartype.beartype")
@@ -53,3 +57,14 @@ def marker_pen(shared_data: Path) -> Path:
 def temple_ring(shared_data: Path) -> Path:
     """Photographs of a plaster temple with camera poses from a gantry."""
     return shared_data / "temple_ring"
+
+
+@pytest.fixture(scope="session")
+def clip(tmp_path_factory: pytest.TempPathFactory) -> "Clip":
+    """Forty drawn images of a book of tags; the images are read-only."""
+    from tests.clip import make_clip
+
+    made = make_clip(tmp_path_factory.mktemp("clip"))
+    for image in made.images:
+        image.setflags(write=False)
+    return made

@@ -17,20 +17,22 @@ import tyro
 from tyro.conf import subcommand
 
 from fairlead.config import (
+    AnnotateConfig,
     Config,
     DemoConfig,
     EvaluateConfig,
     RefineConfig,
     RenderConfig,
+    ReproduceConfig,
     SimulateConfig,
     StudyConfig,
     TrackConfig,
     UsageError,
 )
 from fairlead.io.errors import InputError, one_line
+from fairlead.train.config import CalibrateConfig, ExportConfig, NetworkConfig, TrainConfig
 
 if TYPE_CHECKING:
-    from fairlead.demo import DemoResult
     from fairlead.study import Replay
 
 _DESCRIPTION = "Monocular 6D pose of a rigid target whose 3D model is only roughly known."
@@ -43,6 +45,11 @@ _Command = (
     | Annotated[SimulateConfig, subcommand("simulate")]
     | Annotated[RenderConfig, subcommand("render")]
     | Annotated[StudyConfig, subcommand("study")]
+    | Annotated[TrainConfig, subcommand("train")]
+    | Annotated[CalibrateConfig, subcommand("calibrate")]
+    | Annotated[ExportConfig, subcommand("export")]
+    | Annotated[ReproduceConfig, subcommand("reproduce")]
+    | Annotated[AnnotateConfig, subcommand("annotate")]
 )
 
 
@@ -59,7 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     before = {number: signal.signal(number, _stop) for number in (signal.SIGINT, signal.SIGTERM)}
     stopped = False
     try:
-        config: Config = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
+        config: Config | NetworkConfig = tyro.cli(_Command, prog="fairlead", description=_DESCRIPTION, args=arguments)
         return _run(config)
     except (InputError, UsageError) as error:
         return _complain(str(error), 2)
@@ -94,20 +101,26 @@ def _complain(message: str, status: int) -> int:
     return status
 
 
-def _run(config: Config) -> int:
+def _run(config: Config | NetworkConfig) -> int:
     if isinstance(config, SimulateConfig):
         return _simulate(config)
     if isinstance(config, RenderConfig):
         return _render(config)
     if isinstance(config, StudyConfig):
         return _study(config)
+    if isinstance(config, NetworkConfig):
+        return _network(config)
+    if isinstance(config, ReproduceConfig):
+        return _reproduce(config)
+    if isinstance(config, AnnotateConfig):
+        return _annotate(config)
     from fairlead import run
     from fairlead.progress import progress_bar
 
     if isinstance(config, DemoConfig):
-        from fairlead.demo import demo
+        from fairlead.demo import show_demo
 
-        _show(demo(config))
+        show_demo(config, progress_bar)
         return 0
     if isinstance(config, EvaluateConfig):
         _show_metrics(run.evaluate(config))
@@ -150,6 +163,30 @@ def _render(config: RenderConfig) -> int:
     return 0
 
 
+def _network(config: NetworkConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.train.command import TrainingError, calibrate, export, train
+
+    verb = {TrainConfig: train, CalibrateConfig: calibrate, ExportConfig: export}[type(config)]
+    try:
+        lines = verb(**vars(config), progress=progress_bar)
+    except TrainingError as error:
+        return _complain(str(error), 2)
+    sys.stdout.write("".join(f"{line}\n" for line in lines))
+    return 0
+
+
+def _annotate(config: AnnotateConfig) -> int:
+    from fairlead.prepare import annotate
+
+    def tell(address: str) -> None:
+        sys.stdout.write(f"{config.folder}: {address} (Ctrl-C ends it; every action is saved at once)\n")
+        sys.stdout.flush()
+
+    annotate(config, tell)
+    return 0
+
+
 def _study(config: StudyConfig) -> int:
     from fairlead.progress import progress_bar
     from fairlead.study import replay_run, run_study
@@ -162,6 +199,17 @@ def _study(config: StudyConfig) -> int:
     sys.stdout.write(f"{summary.output}: {counts}\n")
     for file in summary.files:
         sys.stdout.write(f"{file}\n")
+    return 0
+
+
+def _reproduce(config: ReproduceConfig) -> int:
+    from fairlead.progress import progress_bar
+    from fairlead.reproduce import reproduce
+
+    summary = reproduce(config, progress_bar)
+    for line in summary.missing:
+        sys.stdout.write(f"not here: {line}\n")
+    sys.stdout.write(f"made: {', '.join(summary.made)}\n{summary.html}\n")
     return 0
 
 
@@ -180,26 +228,6 @@ def _show_replay(config: StudyConfig, replayed: "Replay") -> None:
         views = "" if one.method.name == "bound" else " ".join(f"{value:.0f}" for value in one.translation_m)
         table.add_row(one.method.name, *texts, views)
     Console().print(table)
-
-
-def _show(result: "DemoResult") -> None:
-    """The demo's table on stdout."""
-    from rich.console import Console
-    from rich.table import Table
-
-    drawn, refined = result.drawing_side, result.refined_side
-    table = Table(title=f"Pen with eight tags: {result.photographs} photographs, {result.corners} corners")
-    table.add_column("")
-    table.add_column("drawing", justify="right")
-    table.add_column("refined", justify="right", style="bold")
-    table.add_row(r"reprojection \[px rms]", f"{result.drawing_px:.2f}", f"{result.refined_px:.2f}")
-    unseen = "  on odd photographs, refined with the even"
-    table.add_row(unseen, f"{result.drawing_unseen_px:.2f}", f"{result.refined_unseen_px:.2f}")
-    refined_mm = f"{refined.mean_mm:.2f} ± {refined.sigma_mm:.2f}"
-    table.add_row(r"mean side of the tags \[mm]", f"{drawn.mean_mm:.2f} ± {drawn.sigma_mm:.2f}", refined_mm)
-    Console().print(table)
-    sys.stdout.write("Photographs do not tell the scale: it is that of the drawing as a whole.\n")
-    sys.stdout.write(f"{result.report} ({result.seconds:.1f} s)\n")
 
 
 def _show_metrics(report: Path) -> None:

@@ -8,6 +8,9 @@ from typing import Annotated, Literal
 
 from tyro.conf import Positional, arg
 
+from fairlead.sinks.autopilots import Autopilot
+from fairlead.sources.argument import Source
+
 Method = Literal["map", "window", "epnp"]
 StudyKind = Literal["noise", "angle", "grid"]
 Backend = Literal["threads", "dask"]
@@ -21,16 +24,17 @@ class UsageError(ValueError):
 class InputConfig:
     """What track and refine are told alike."""
 
-    source: Positional[Path]
-    """observations.csv, observations.parquet, or a folder of images (then --detector too)."""
+    source: Positional[Source]
+    """observations.csv or .parquet; or, with --detector, images: a folder, a BOP scene, a video, a bag or .mcap,
+    camera:0, rtsp://..."""
     target: Path
     """target.toml: landmarks, and how well they are known."""
-    camera: Path
-    """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt."""
     output: Annotated[Path, arg(aliases=["-o"])]
     """Folder for the results; files of an earlier run in it are replaced."""
+    camera: Path | None = None
+    """Calibration: ROS camera_info, OpenCV or Kalibr YAML, COLMAP cameras.txt. A bag may bring its own."""
     detector: str | None = None
-    """What finds the landmarks in images, e.g. aruco:DICT_4X4_100 or apriltag:36h11."""
+    """What finds the landmarks in images, e.g. network.onnx, frigate (shipped), aruco:DICT_4X4_100, apriltag:36h11."""
     truth: Path | None = None
     """truth.csv; the run is then evaluated as well."""
     options: Path | None = None
@@ -40,7 +44,9 @@ class InputConfig:
     attitude: Path | None = None
     """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
     fps: float | None = None
-    """Frames per second of an image folder without stamps [1/s]."""
+    """Frames per second of images without stamps [1/s]."""
+    topic: str | None = None
+    """Which images of a bag that holds several."""
     camera_name: str | None = None
     """Which camera of a file that holds several."""
     min_coverage: float = 0.5
@@ -55,10 +61,34 @@ class InputConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class TrackConfig(InputConfig):
-    """Track a target through a table of observations or a folder of images, frame by frame."""
+    """Track a target through images or a table of observations, frame by frame."""
 
     method: Method = "map"
     """map: this project's estimator. window: the published one. epnp: each frame alone."""
+    overlay: Path | None = None
+    """Video (.mkv) of the images with silhouette, landmarks and their uncertainty drawn over them."""
+
+    viewer: bool = False
+    """Show it while it runs (rerun)."""
+    rrd: Path | None = None
+    """File (.rrd) of what the viewer shows, to look at later with `rerun FILE`."""
+    mcap: Path | None = None
+    """ROS 2 messages of every frame: /fairlead/pose, /tf, /diagnostics."""
+    mavlink: str | None = None
+    """Autopilot to tell: udpout:127.0.0.1:14550, udpin:HOST:PORT, tcp:HOST:PORT, /dev/ttyACM0:921600; then --autopilot
+    and --mount too."""
+    autopilot: Autopilot | None = None
+    """Which rules it follows."""
+    mount: Path | None = None
+    """mount.toml: where the camera sits on the vehicle."""
+    mavlink_key: Path | None = None
+    """File with the secret that messages are signed with: 32 bytes or 64 hexadecimal digits."""
+    mavlink_systems: tuple[int, ...] = (1,)
+    """System ids that are listened to; the first one is the vehicle."""
+    mavlink_rate: float = 20.0
+    """Estimates sent at most [1/s]."""
+    parquet: bool = False
+    """Write poses.parquet at the end, too."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,8 +122,10 @@ class EvaluateConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class DemoConfig:
-    """Real photographs of a pen with eight tags whose drawing is wrong: poses, refined model, report."""
+    """What the program does, on recordings that come along: poses, refined model, report."""
 
+    recording: Positional[Literal["ship", "pen"]] = "ship"
+    """ship: a rendered clip through the shipped network, with truth. pen: tags in real photographs, a wrong drawing."""
     output: Annotated[Path, arg(aliases=["-o"])] = Path("fairlead_demo")
     """Folder for the results."""
 
@@ -148,29 +180,42 @@ class RenderConfig:
     """Let the target heave, roll and pitch."""
     stride: int = 5
     """Every how many frames of the 25 Hz camera one is rendered."""
+    first: int = 0
+    """Number of the frame of that camera to begin with."""
     frames: int | None = None
     """Only so many, from the first on."""
     depth: bool = False
     """Write depth images, too."""
     reuse: Path | None = None
     """Folder of the same sequence at full quality: its light is developed anew, with other weather."""
+    clip: Path | None = None
+    """Folder for the sequence as a video with its truth."""
+    crf: float = 24.0
+    """Constant rate factor of that video: less is better and larger."""
     count: int = 1000
     """How many crops."""
+    empty: float = 0.0
+    """Share of the crops without the target, often with another ship in its place [-]."""
     size: int = 256
     """Side of a crop [px]."""
     seed: int = 0
     """Of everything that is drawn by chance."""
     jobs: int = 1
     """Processes."""
+    threads: int | None = None
+    """Of each process at full quality; as many as there are cores if not given."""
 
     def __post_init__(self) -> None:
         if not (
             0.0 <= self.strength <= 1.0 and 1.0 <= self.wind_m_s <= 30.0 and -1.0 <= self.sun_elevation_deg <= 89.0
         ):
             raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
-        least = min(self.samples, self.stride, self.count, self.jobs, 1 if self.frames is None else self.frames)
-        if least < 1 or not 32 <= self.size <= 2048 or self.seed < 0:
-            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed not below 0")
+        counts = (self.samples, self.stride, self.count, self.jobs, self.frames, self.threads)
+        least = min(count for count in counts if count is not None)
+        if not (0.0 <= self.crf <= 51.0 and 0.0 <= self.empty <= 1.0):
+            raise UsageError(f"render: expected --crf 0 to 51, got {self.crf}, --empty 0 to 1, got {self.empty}")
+        if least < 1 or not 32 <= self.size <= 2048 or min(self.seed, self.first) < 0:
+            raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed, --first not below 0")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,4 +257,79 @@ class StudyConfig:
             raise UsageError("--backend dask and --scheduler ADDRESS go together")
 
 
-Config = TrackConfig | RefineConfig | EvaluateConfig | SimulateConfig | RenderConfig | StudyConfig | DemoConfig
+@dataclass(frozen=True, kw_only=True)
+class ReproduceConfig:
+    """Every table and figure of the published experiments, theirs beside ours. Goes on where it stopped."""
+
+    output: Annotated[Path, arg(aliases=["-o"])]
+    """Folder for the report, tables and figures; sections that are in it stay until they are made again."""
+    quick: bool = False
+    """3 told models a sequence instead of 20, 50 simulated runs a setting instead of 1000."""
+    only: tuple[str, ...] = ()
+    """Only these sections, e.g. landmarks poses model times studies failures real."""
+    sequences: tuple[Path, ...] = ()
+    """Folders of sequences with truth.csv, or such sequences; the clips that come along if not given."""
+    networks: tuple[Path, ...] = ()
+    """ONNX detectors; those that come along if not given."""
+    real: Path | None = None
+    """Folder with the recordings marker_pen and temple_ring."""
+    weather: Path | None = None
+    """Folder with one sequence per weather, named KIND-STRENGTH, e.g. fog-0.5."""
+    seeds: int | None = None
+    """Told models a sequence."""
+    study_runs: int | None = None
+    """Simulated runs a setting."""
+    target: Path | None = None
+    """target.toml of sequences that have none of their own; the frigate's if not given."""
+    cache: Path | None = None
+    """Folder for detections and runs, which can be made again; cache in the output if not given."""
+
+    def __post_init__(self) -> None:
+        for name, value in (("seeds", self.seeds), ("study-runs", self.study_runs)):
+            if value is not None and value < 1:
+                raise UsageError(f"--{name}: expected a whole number >= 1, got {value}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnnotateConfig:
+    """A page in the browser, of this machine alone: landmarks on a mesh, marks in frames, truth poses."""
+
+    folder: Positional[Path]
+    """What is annotated: mesh, camera.yaml, images/ or rgb/, target.toml if there is one; the labels go there, too."""
+    mesh: Path | None = None
+    """PLY, OBJ, STL or glTF, if there is not just one in the folder."""
+    mesh_scale: float = 1.0
+    """Metres in a unit of the mesh: 0.001 for one in millimetres."""
+    target: Path | None = None
+    """Landmarks to begin with; target.toml of the folder if not given."""
+    camera: Path | None = None
+    """Calibration; camera.yaml of the folder if not given."""
+    images: Path | None = None
+    """Folder of the frames; images/, rgb/ or the folder itself if not given."""
+    fps: float | None = None
+    """Frames per second where the images carry no stamps [1/s]; 1 if not given."""
+    port: int = 8090
+    """Of the page; 0: any that is free."""
+    show: bool = True
+    """Open the browser."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.mesh_scale < 1e9:
+            raise UsageError(f"--mesh-scale: expected metres in a unit of the mesh, got {self.mesh_scale}")
+        if self.fps is not None and not 0.0 < self.fps < 1e6:
+            raise UsageError(f"--fps: expected a positive number of frames per second, got {self.fps}")
+        if not 0 <= self.port < 65536:
+            raise UsageError(f"--port: expected 0 to 65535, got {self.port}")
+
+
+Config = (
+    ReproduceConfig
+    | TrackConfig
+    | RefineConfig
+    | EvaluateConfig
+    | SimulateConfig
+    | RenderConfig
+    | StudyConfig
+    | DemoConfig
+    | AnnotateConfig
+)

@@ -27,6 +27,7 @@ __all__ = [
     "log_so3",
     "matrix_from_quat_xyzw",
     "perturb",
+    "point_covariance",
     "project",
     "quat_xyzw_from_matrix",
     "transform",
@@ -204,3 +205,14 @@ def _align(points_a: Points3, points_b: Points3, *, with_scale: bool) -> Similar
     variance_b = float((centred_b**2).sum(axis=1).mean())
     scale = float(singular @ signs) / variance_b if with_scale else 1.0
     return Similarity(scale=scale, R_a_b=R, t_a_b=mean_a - scale * R @ mean_b)
+
+
+def point_covariance(T_a_b: Matrix4, covariance: Matrix6, X_b: Vector3) -> Matrix3:
+    """Covariance of p_a = T_a_b X_b [m^2] for that of xi in T Exp(xi): C = R J S J^T R^T, J = [I, -hat(X)].
+
+    CONVENTIONS.md eq. (7).
+    """
+    R = T_a_b[:3, :3]
+    J = np.hstack([R, -R @ hat(X_b)])
+    C = J @ covariance @ J.T
+    return 0.5 * (C + C.T)

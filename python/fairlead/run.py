@@ -2,18 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The meeting point: source -> detector -> estimator -> sinks."""
 
-import itertools
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from fairlead.config import EvaluateConfig, InputConfig, RefineConfig, TrackConfig, UsageError
+from fairlead.inputs import Seen, follow, let_go, open_camera, open_views, timed_views
 from fairlead.io.attitudes import read_attitudes
-from fairlead.io.bop import is_bop
-from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
 from fairlead.io.options import load_options
 from fairlead.io.poses import read_truth
@@ -21,14 +19,12 @@ from fairlead.io.ranges import read_ranges
 from fairlead.io.run_record import RunRecord, input_file
 from fairlead.io.target import load_target
 from fairlead.io.timing import Timing
+from fairlead.outputs import check_outputs, open_outputs
 from fairlead.progress import ProgressFactory, silent
 from fairlead.sinks.run_folder import WRITTEN, RunFolder
-from fairlead.sources.bop import BopSource
-from fairlead.sources.image_folder import ImageFolderSource
+from fairlead.sinks.sink import Outcome
 from fairlead.sources.readings import SensorReadings
-from fairlead.sources.source import ImageFrame, ImageSource, ViewSource
-from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
-from fairlead.sources.table import TableSource
+from fairlead.sources.video import without_password
 from fairlead.tracker import Refinement, Tracker, TrackerOptions
 from fairlead.tracker import refine as refine_batch
 from fairlead.types import Camera, PoseEstimator, Target, View
@@ -68,20 +64,26 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
     if any(reading.landmark is None for reading in readings.ranges):
         options = replace(options, range_to_origin=True)
     estimator = make_estimator(config, options, target, camera)
-    timed_views = _timed(source, config.source)
+    views_seen = timed_views(source, config.source)
     record = _record("track", config, options if config.method == "map" else None)
     with RunFolder(config.output, record, target, camera) as folder:
         folder.open_sinks(estimator)
-        with progress("track", source.count) as advance:
-            for view, detect_ms in timed_views:
-                start_s = time.perf_counter()
-                if isinstance(estimator, Tracker):
-                    readings.tell(estimator, view)
-                estimate = estimator.update(view)
-                update_ms = 1e3 * (time.perf_counter() - start_s)
-                folder.write_view(view)
-                folder.write(estimate, _timing(view, detect_ms, update_ms))
-                advance(source.work(view))
+        for sink in open_outputs(config, target, camera, estimator):
+            folder.add(sink)
+        try:
+            with progress("track", lambda: source.count() or None) as advance:
+                for seen in views_seen:
+                    start_s = time.perf_counter()
+                    if isinstance(estimator, Tracker):
+                        readings.tell(estimator, seen.view)
+                    estimate = estimator.update(seen.view)
+                    update_ms = 1e3 * (time.perf_counter() - start_s)
+                    follow(source, estimate)
+                    outcome = Outcome(estimate=estimate, view=seen.view, image=seen.image)
+                    folder.write_outcome(outcome, _timing(seen, update_ms))
+                    advance(source.work(seen.view))
+        finally:
+            folder.count_dropped(let_go(source))
     return _finish(config, folder.record)
 
 
@@ -91,17 +93,17 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
     source = open_views(config, target, camera)
     readings = sensor_readings(config, target)
     options = tracker_options(config.options)
-    timed_views = _timed(source, config.source)
+    views_seen = timed_views(source, config.source)
     with RunFolder(config.output, _record("refine", config, options), target, camera) as folder:
         folder.open_sinks(None)
         views: list[View] = []
         timings: list[Timing] = []
         with progress("read", source.count) as advance:
-            for view, detect_ms in timed_views:
-                folder.write_view(view)
-                views.append(view)
-                timings.append(_timing(view, detect_ms, float("nan")))
-                advance(source.work(view))
+            for seen in views_seen:
+                folder.write_view(seen.view)
+                views.append(seen.view)
+                timings.append(_timing(seen, float("nan")))
+                advance(source.work(seen.view))
         batch = partial(refine_batch, views, target, camera, options, range_bias_sigma_m=config.range_bias_sigma_m)
         refinement = _solve(config, partial(batch, ranges=readings.ranges, attitudes=readings.attitudes))
         for estimate, timing in zip(refinement.estimates, timings, strict=True):
@@ -139,48 +141,6 @@ def evaluate(config: EvaluateConfig) -> Path:
     if not config.run.is_dir():
         raise InputError(config.run, "expected a folder written by track or refine")
     return evaluate_run(config.run, config.truth, target_true=config.target_true, output=config.output)
-
-
-class DetectedViews:
-    """The views that a detector finds in a sequence of images."""
-
-    def __init__(self, images: ImageSource, detect: Callable[[ImageFrame], View]) -> None:
-        self._images = images
-        self._detect = detect
-
-    def __iter__(self) -> Iterator[View]:
-        return map(self._detect, self._images)
-
-    def count(self) -> int:
-        """Number of images."""
-        return self._images.count()
-
-    def work(self, view: View) -> int:
-        """One image."""
-        del view
-        return 1
-
-
-def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSource:
-    """A table, or a folder of images with a detector, by what the path is. Raises InputError, UsageError."""
-    path = config.source
-    if path.suffix in TABLE_SUFFIXES and not path.is_dir():
-        if config.detector is not None:
-            raise UsageError(f"--detector: {path} holds observations already")
-        return TableSource(path, target.landmarks)
-    if not path.is_dir():
-        raise InputError(path, "expected observations (.csv, .parquet) or a folder of images")
-    if config.detector is None:
-        raise UsageError(f"{path} is a folder of images: expected --detector too")
-    from fairlead.detect import detector_from_spec
-
-    try:
-        detector = detector_from_spec(config.detector, target)
-    except ValueError as error:
-        raise UsageError(f"--detector: {str(error).removeprefix('detector: ')}") from error
-    source = BopSource if is_bop(path) else ImageFolderSource
-    images = source(path, camera, fps=config.fps)
-    return DetectedViews(images, lambda each: detector.detect(each.image, each.frame, each.stamp_ns))
 
 
 def sensor_readings(config: InputConfig, target: Target) -> SensorReadings:
@@ -230,47 +190,47 @@ def tracker_options(path: Path | None) -> TrackerOptions:
 
 def _load(config: InputConfig) -> tuple[Target, Camera]:
     """Target and camera; refuses to write over anything that is read."""
-    for path in _input_paths(config).values():
+    paths = _input_paths(config)
+    for path in paths.values():
         if path.name in WRITTEN and path.resolve().parent == config.output.resolve():
             raise UsageError(f"--output: {config.output} would write over the input {path}")
+    if isinstance(config, TrackConfig):
+        check_outputs(config, list(paths.values()))
+    elif isinstance(config.source, str):
+        raise UsageError(f"{config.source} has no end: use track")
     if config.truth is not None:
         read_truth(config.truth)  # found out now rather than at the end of a long run
     target = load_target(config.target)
     if len(target.landmarks) < MIN_LANDMARKS:
         raise InputError(config.target, f"expected at least {MIN_LANDMARKS} landmarks, got {len(target.landmarks)}")
-    return target, load_camera(config.camera, name=config.camera_name)
+    return target, open_camera(config)
 
 
-def _timed(source: ViewSource, path: Path) -> Iterator[tuple[View, float]]:
-    """Views and the time to get each [ms]. The first is fetched at once, so that a bad source is found out early."""
-    iterator = _stopwatch(source)
-    first = next(iterator, None)
-    if first is None:
-        raise InputError(path, "holds no frames")
-    return itertools.chain([first], iterator)
-
-
-def _stopwatch(source: ViewSource) -> Iterator[tuple[View, float]]:
-    start_s = time.perf_counter()
-    for view in source:
-        yield view, 1e3 * (time.perf_counter() - start_s)
-        start_s = time.perf_counter()
-
-
-def _timing(view: View, detect_ms: float, update_ms: float) -> Timing:
-    return Timing(frame=view.frame, stamp_ns=view.stamp_ns, detect_ms=detect_ms, update_ms=update_ms)
+def _timing(seen: Seen, update_ms: float) -> Timing:
+    view = seen.view
+    times = {"read_ms": seen.read_ms, "detect_ms": seen.detect_ms, "update_ms": update_ms}
+    return Timing(frame=view.frame, stamp_ns=view.stamp_ns, **times)
 
 
 def _input_paths(config: InputConfig) -> dict[str, Path]:
     """Every file that was named, by its role."""
-    paths = {"source": config.source, "target": config.target, "camera": config.camera}
-    more = {"options": config.options, "truth": config.truth, "range": config.range, "attitude": config.attitude}
+    paths = {"target": config.target}
+    more = {"camera": config.camera, "options": config.options, "truth": config.truth}
+    more |= {"range": config.range, "attitude": config.attitude}
+    if config.detector is not None and config.detector.endswith(".onnx"):
+        more["detector"] = Path(config.detector)
+    if isinstance(config, TrackConfig):
+        more |= {"mount": config.mount}
+    if isinstance(config.source, Path):
+        paths = {"source": config.source} | paths
     return paths | {role: path for role, path in more.items() if path is not None}
 
 
 def _record(command: str, config: InputConfig, options: TrackerOptions | None) -> RunRecord:
     inputs = tuple(input_file(role, path) for role, path in _input_paths(config).items())
     seed = None if options is None else options.seed
+    if isinstance(config.source, str):
+        config = replace(config, source=without_password(config.source))
     return RunRecord(command=command, state="running", options=config, inputs=inputs, estimator=options, seed=seed)
 
 

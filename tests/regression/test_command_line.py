@@ -111,7 +111,7 @@ def test_files_that_are_not_there_and_arguments_that_do_not_go_together(
     (flight.folder / "images").mkdir()
     for changes, message in [
         ({"source": none}, "No such file"),
-        ({"source": flight.folder / "none.mkv"}, "expected observations (.csv, .parquet) or a folder of images"),
+        ({"source": flight.folder / "none.mkv"}, "expected observations (.csv, .parquet), a folder of images"),
         ({"target": none}, "No such file"),
         ({"camera": none}, "No such file"),
         ({"truth": none}, "No such file"),

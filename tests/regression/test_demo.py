@@ -7,7 +7,7 @@ import pytest
 
 from fairlead.cli import main
 from fairlead.config import DemoConfig
-from fairlead.demo import DemoResult, demo, tag_side
+from fairlead.demo import PenResult, demo_pen, tag_side
 from fairlead.io.run_record import read_run_record
 from fairlead.io.shipped import shipped_data
 from fairlead.io.target import load_target
@@ -15,11 +15,11 @@ from fairlead.types import Target
 
 
 @pytest.fixture(scope="module")
-def result(tmp_path_factory: pytest.TempPathFactory) -> DemoResult:
-    return demo(DemoConfig(output=tmp_path_factory.mktemp("demo")))
+def result(tmp_path_factory: pytest.TempPathFactory) -> PenResult:
+    return demo_pen(DemoConfig(recording="pen", output=tmp_path_factory.mktemp("demo")))
 
 
-def test_the_refined_model_is_better_also_on_photographs_that_it_has_not_seen(result: DemoResult) -> None:
+def test_the_refined_model_is_better_also_on_photographs_that_it_has_not_seen(result: PenResult) -> None:
     assert result.photographs == 16
     assert result.corners >= 200
     assert result.refined_px <= 0.42
@@ -32,10 +32,10 @@ def test_the_refined_model_is_better_also_on_photographs_that_it_has_not_seen(re
 
 
 def test_the_demo_prints_its_table(
-    result: DemoResult, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    result: PenResult, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fairlead.demo.demo", lambda config: result)
-    assert main(["demo"]) == 0
+    monkeypatch.setattr("fairlead.demo.show.demo_pen", lambda config: result)
+    assert main(["demo", "pen"]) == 0
     output = capsys.readouterr()
     for word in ("reprojection [px rms]", "mean side of the tags [mm]", "13.00", str(result.report)):
         assert word in output.out

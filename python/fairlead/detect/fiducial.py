@@ -10,7 +10,7 @@ import numpy as np
 from fairlead import opencv
 from fairlead.detect.edges import measure_tags
 from fairlead.detect.saddles import measure_saddles
-from fairlead.types import Target, View
+from fairlead.types import Estimate, Target, View
 
 CORNERS = ("tl", "tr", "br", "bl")
 """Corners of a tag in OpenCV's order, clockwise as the upright tag is seen."""
@@ -48,6 +48,9 @@ class TagDetector:
             measured.covariances[measured.measured].reshape(-1, 2, 2),
             self._wanted,
         )
+
+    def follow(self, estimate: Estimate) -> None:
+        """Every image is searched as a whole."""
 
     def _is_wanted(self, identity: int) -> bool:
         return self._wanted is None or any(f"tag{identity}_{corner}" in self._wanted for corner in CORNERS)
@@ -112,6 +115,9 @@ class BoardDetector:
         names = [f"corner{i}" for i in found.ids[saddles.measured]]
         pixels, covariances = saddles.corners[saddles.measured], saddles.covariances[saddles.measured]
         return _view(frame, stamp_ns, names, pixels, covariances, self._wanted)
+
+    def follow(self, estimate: Estimate) -> None:
+        """Every image is searched as a whole."""
 
 
 def _oriented(grey: opencv.GreyImage, grid: np.ndarray) -> np.ndarray:

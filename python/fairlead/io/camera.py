@@ -79,6 +79,15 @@ def _camera(
         raise InputError(path, str(error)) from error
 
 
+def ros_camera(path: Path, name: str, size: tuple[int, int], model: str, K: list[float], D: list[float]) -> Camera:
+    """The camera of a ROS CameraInfo message: size (width, height), K row by row. Raises InputError."""
+    if model.lower() not in _ROS_MODELS:
+        raise InputError(path, f"distortion model: got {model!r}; {nearest(model, set(_ROS_MODELS) - {''})}")
+    if len(K) != 9 or K[1] != 0.0 or K[3] != 0.0 or K[6:] != [0.0, 0.0, 1.0]:
+        raise InputError(path, f"K: expected fx 0 cx 0 fy cy 0 0 1, got {K}")
+    return _camera(path, name, size, _ROS_MODELS[model.lower()], [K[0], K[4], K[2], K[5]], D)
+
+
 def fit_distortion(model: CameraModel, coefficients: list[float], path: Path) -> np.ndarray:
     """The coefficients at the length of the model: missing ones are zero, surplus ones must be."""
     size = DISTORTION_SIZE[model]

@@ -59,13 +59,15 @@ def label_json(image: LabelledImage) -> dict[str, Any]:
     }
 
 
-def write_coco(path: Path, name: str, landmarks: Sequence[str], labels: Iterable[dict[str, Any]]) -> None:
+def write_coco(
+    path: Path, name: str, landmarks: Sequence[str], labels: Iterable[dict[str, Any]], *, made: str = "rendered by"
+) -> None:
     """Write annotations.json from what `label_json` made, in order of the images' numbers; whole or not at all."""
     ordered = sorted(labels, key=lambda label: cast(int, label["id"]))
     images = [label["image"] for label in ordered]
     annotations = [{key: value for key, value in label.items() if key != "image"} for label in ordered]
     document = {
-        "info": {"description": f"{name}, rendered by fairlead", "pixel_0_0": "centre of the top-left pixel"},
+        "info": {"description": f"{name}, {made} fairlead", "pixel_0_0": "centre of the top-left pixel"},
         "categories": [{"id": 1, "name": name, "keypoints": list(landmarks), "skeleton": []}],
         "images": images,
         "annotations": annotations,

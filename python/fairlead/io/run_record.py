@@ -22,7 +22,7 @@ RunState = Literal["running", "done", "interrupted", "failed"]
 _PACKAGES = ("fairlead", "numpy", "opencv-python-headless", "pyarrow", "PyYAML", "scipy")
 _KEYS = (
     *("version", "command", "state", "options", "estimator", "seed", "inputs"),
-    *("versions", "git", "frames", "frames_with_pose"),
+    *("versions", "git", "frames", "frames_with_pose", "frames_dropped"),
 )
 
 
@@ -51,6 +51,8 @@ class RunRecord:
     seed: int | None = None
     frames: int = 0
     frames_with_pose: int = 0
+    frames_dropped: int = 0
+    """Of a live source: images that nobody had time for."""
 
     def input_path(self, role: str) -> Path | None:
         """Where the input of this role was; None if there was none."""
@@ -85,6 +87,7 @@ def write_run_record(path: Path, record: RunRecord) -> None:
         "git": git_commit(),
         "frames": record.frames,
         "frames_with_pose": record.frames_with_pose,
+        "frames_dropped": record.frames_dropped,
     }
     write_json(path, document)
 
@@ -121,6 +124,7 @@ def read_run_record(path: Path | str) -> RunRecord:
         inputs=tuple(inputs),
         frames=fields.integer("frames"),
         frames_with_pose=fields.integer("frames_with_pose"),
+        frames_dropped=fields.integer("frames_dropped") if "frames_dropped" in fields else 0,
     )
 
 

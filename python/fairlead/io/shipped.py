@@ -2,9 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Data that comes with the program."""
 
+import re
 from pathlib import Path
 
 import fairlead
+
+DEFAULT_NETWORK = "heat-t"
+_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 
 
 def shipped_data(name: str) -> Path:
@@ -17,3 +21,18 @@ def shipped_data(name: str) -> Path:
         if folder.is_dir():
             return folder
     raise FileNotFoundError(2, f"data/{name} did not come with this installation", str(package / "data" / name))
+
+
+def shipped_network(name: str) -> Path | None:
+    """`frigate` or `frigate/rtmpose-t`: a network that came with a target, DEFAULT_NETWORK if none is named.
+
+    None where there is no such file.
+    """
+    target, _, network = name.partition("/")
+    if not (_NAME.fullmatch(target) and _NAME.fullmatch(network or DEFAULT_NETWORK)):
+        return None
+    try:
+        path = shipped_data(target) / f"{network or DEFAULT_NETWORK}.onnx"
+    except FileNotFoundError:
+        return None
+    return path if path.is_file() else None

@@ -159,25 +159,35 @@ def save_target(path: Path | str, target: Target) -> None:
     """
     path = Path(path)
     side = path.with_suffix(".npz")
+    sigmas = np.sqrt(np.clip(np.diag(target.covariance), 0.0, None)).reshape(-1, 3)
     temporary = side.with_name(f".{side.stem}.part.npz")
     np.savez(temporary, landmarks=np.array(target.landmarks, dtype=np.str_), covariance=target.covariance)
     temporary.replace(side)
+    _write_text(path, _document(target, path.parent, f"covariance = {_quoted(side.name)}", sigmas))
+
+
+def save_prior(path: Path | str, target: Target, sigmas_m: Points3, scale_sigma: float = 0.0) -> None:
+    """Write target.toml for a person to edit: P0 as sigmas (n, 3) [m] and a scale, `prior_covariance`, no npz."""
+    path = Path(path)
+    _write_text(path, _document(target, path.parent, f"scale_sigma = {float(scale_sigma)!r}", sigmas_m))
+
+
+def _write_text(path: Path, text: str) -> None:
     temporary = path.with_name(f".{path.name}.part")
-    temporary.write_text(_document(target, path.parent, side.name), encoding="utf-8", newline="\n")
+    temporary.write_text(text, encoding="utf-8", newline="\n")
     temporary.replace(path)
 
 
-def _document(target: Target, folder: Path, covariance: str) -> str:
+def _document(target: Target, folder: Path, prior: str, sigmas: Points3) -> str:
     lines = [f"name = {_quoted(target.name)}"]
     if target.mesh is not None:
         lines.append(_mesh_line(target.mesh, folder))
-    lines += ["", "[prior]", f"covariance = {_quoted(covariance)}"]
+    lines += ["", "[prior]", prior]
     if target.motion is not None:
         lines += ["", "[motion]", f"kind = {_quoted(target.motion.kind)}"]
         lines.append(f"jerk_density_m_s25 = {float(target.motion.jerk_density_m_s25)!r}")
     if target.touchdown is not None:
         lines += ["", "[touchdown]", f"position_m = {target.touchdown.tolist()}"]
-    sigmas = np.sqrt(np.clip(np.diag(target.covariance), 0.0, None)).reshape(-1, 3)
     for name, position, sigma in zip(target.landmarks, target.positions.tolist(), sigmas.tolist(), strict=True):
         lines += ["", "[[landmark]]", f"name = {_quoted(name)}", f"position_m = {position}", f"sigma_m = {sigma}"]
     for distance in target.distances:

@@ -6,7 +6,20 @@ Works with OpenCV 4 and 5. Every pose that comes back was checked (docs/baseline
 measured by its header before it was decoded. `cv2.FileStorage` is not used: it corrupts the heap on malformed files.
 """
 
-from fairlead.opencv.images import GreyImage, Image, grey, image_size, read_image
+from fairlead.opencv.capture import open_capture
+from fairlead.opencv.drawing import (
+    Colour,
+    Line,
+    contours,
+    draw_lines,
+    fill_polygon,
+    fill_region,
+    fill_triangles,
+    resample,
+)
+from fairlead.opencv.filters import warp_affine
+from fairlead.opencv.flow import carry_points
+from fairlead.opencv.images import GreyImage, Image, decode_image, grey, image_size, read_image
 from fairlead.opencv.markers import (
     FoundCorners,
     charuco_corners,
@@ -17,17 +30,28 @@ from fairlead.opencv.markers import (
 )
 from fairlead.opencv.pnp import MIN_POINTS, PnpSolution, epnp, ideal_pixels, ippe, refine, sqpnp
 from fairlead.opencv.pnp_views import epnp_views
+from fairlead.opencv.silhouettes import filled_triangles
 
 __all__ = [
     "MIN_POINTS",
+    "Colour",
     "FoundCorners",
     "GreyImage",
     "Image",
+    "Line",
     "PnpSolution",
+    "carry_points",
     "charuco_corners",
     "chessboard_corners",
+    "contours",
+    "decode_image",
+    "draw_lines",
     "epnp",
     "epnp_views",
+    "fill_polygon",
+    "fill_region",
+    "fill_triangles",
+    "filled_triangles",
     "grey",
     "ideal_pixels",
     "image_size",
@@ -35,7 +59,10 @@ __all__ = [
     "marker_cells",
     "marker_corners",
     "marker_image",
+    "open_capture",
     "read_image",
     "refine",
+    "resample",
     "sqpnp",
+    "warp_affine",
 ]

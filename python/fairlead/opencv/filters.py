@@ -5,7 +5,7 @@
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float32, UInt8, UInt16
+from jaxtyping import Float32, Float64, UInt8, UInt16
 
 Light = Float32[np.ndarray, "h w c"]
 
@@ -30,6 +30,19 @@ def resized(image: Light, width: int, height: int) -> Float32[np.ndarray, "rows 
     smaller = width * height < image.shape[0] * image.shape[1]
     result = cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR)
     return np.array(result, np.float32).reshape(height, width, image.shape[2])
+
+
+def warp_affine(
+    image: UInt8[np.ndarray, "h w 3"], A: Float64[np.ndarray, "2 3"], size: tuple[int, int], border: int = 114
+) -> UInt8[np.ndarray, "rows columns 3"]:
+    """The image moved by z' = A (z, 1), size (width, height); bilinear; grey where the image does not reach.
+
+    Pixel centres are whole numbers on both sides. A shrinking A is not smoothed here.
+    """
+    import cv2
+
+    grey = (border, border, border)
+    return np.asarray(cv2.warpAffine(image, A, size, flags=cv2.INTER_LINEAR, borderValue=grey))
 
 
 def streaks(
@@ -62,3 +75,13 @@ def write_image(path: Path, image: UInt8[np.ndarray, "h w *c"] | UInt16[np.ndarr
     part = path.with_name(f".{path.name}.part")
     part.write_bytes(data.tobytes())
     part.replace(path)
+
+
+def encode_png(image: UInt8[np.ndarray, "h w *c"]) -> bytes:
+    """A PNG of 8 bits a channel, channels blue green red, quickly rather than small."""
+    import cv2
+
+    done, data = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    if not done:
+        raise ValueError(f"no encoder for {image.dtype} {image.shape}")
+    return data.tobytes()

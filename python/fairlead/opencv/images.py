@@ -34,15 +34,20 @@ def read_image(path: Path) -> Image:
     The orientation tag of a photograph is ignored: pixels stay where the sensor, and so the calibration, has them.
     Raises InputError as `image_size` does, and if decoding fails.
     """
+    return decode_image(*_checked(path), path)
+
+
+def decode_image(data: bytes, size: tuple[int, int] | None, named: Path) -> Image:
+    """As `read_image` from the bytes of a file; the size (width, height) is that of its header, None: not read yet."""
     import cv2
 
-    data, (width, height) = _checked(path)
+    width, height = _header(data, named) if size is None else size
     try:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION)
     except cv2.error as error:
-        raise InputError(path, "expected an image, the decoder failed") from error
+        raise InputError(named, "expected an image, the decoder failed") from error
     if image is None or image.shape != (height, width, 3) or image.dtype != np.uint8:
-        raise InputError(path, f"expected an image of {width} x {height} as its header says, the decoder failed")
+        raise InputError(named, f"expected an image of {width} x {height} as its header says, the decoder failed")
     return np.asarray(image)
 
 
@@ -65,10 +70,14 @@ def _checked(path: Path) -> tuple[bytes, tuple[int, int]]:
         data = path.read_bytes()
     except OSError as error:
         raise InputError(path, f"cannot be read: {error.strerror}") from error
+    return data, _header(data, path)
+
+
+def _header(data: bytes, named: Path) -> tuple[int, int]:
     try:
         width, height = image_header(data)
     except HeaderError as error:
-        raise InputError(path, str(error)) from error
+        raise InputError(named, str(error)) from error
     if width <= 0 or height <= 0 or width * height > MAX_PIXELS:
-        raise InputError(path, f"expected an image of 1 to {MAX_PIXELS} pixels, got {width} x {height}")
-    return data, (width, height)
+        raise InputError(named, f"expected an image of 1 to {MAX_PIXELS} pixels, got {width} x {height}")
+    return width, height

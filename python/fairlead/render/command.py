@@ -42,13 +42,18 @@ def render(
     wind_m_s: float = 7.5,
     swell: bool = False,
     stride: int = 5,
+    first: int = 0,
     frames: int | None = None,
     depth: bool = False,
     reuse: Path | None = None,
+    clip: Path | None = None,
+    crf: float = 24.0,
     count: int = 1000,
+    empty: float = 0.0,
     size: int = 256,
     seed: int = 0,
     jobs: int = 1,
+    threads: int | None = None,
     progress: ProgressFactory = silent,
 ) -> int:
     """Render crops, a named flight, or the poses of a truth.csv. Returns how many pictures were made.
@@ -67,32 +72,53 @@ def render(
             camera=lens,
             folder=output,
             count=count,
+            empty_share=empty,
             envelope=_envelope(model, surroundings),
             size=size,
             seed=seed,
             surroundings=surroundings,
             quality=quality or "draft",
             samples=samples,
+            threads=threads,
         )
         return render_crops(crops, jobs=jobs, progress=progress)
-    from fairlead.render.sequence import render_sequence
-
-    placed = _placed(sequence, model, stride, Swell() if swell else None, surroundings)
+    flown = _placed(sequence, model, stride, Swell() if swell else None, surroundings)
     setting = Setting(surroundings=surroundings, sun_elevation_deg=sun_elevation_deg, wind_m_s=wind_m_s)
     job = Job(
         target=model,
         camera=lens,
-        placed=tuple(placed[:frames]),
+        placed=_chosen(flown, first, frames),
         folder=output,
         quality=quality or "full",
         samples=samples,
+        threads=threads,
         setting=setting,
         seed=seed,
         depth=depth,
         reuse=reuse,
         weather=None if weather is None else Weather(kind=weather, strength=strength, seed=seed),
     )
-    return render_sequence(job, jobs=jobs, progress=progress)
+    return _made(job, jobs, clip, crf, progress)
+
+
+def _made(job: Job, jobs: int, clip: Path | None, crf: float, progress: ProgressFactory) -> int:
+    """Render what is missing and encode it if wanted; returns how many pictures were made."""
+    from fairlead.render.sequence import render_sequence
+
+    made = render_sequence(job, jobs=jobs, progress=progress)
+    if clip is not None:
+        from fairlead.render.clip import write_clip
+
+        write_clip(job, clip, crf=crf, progress=progress)
+    return made
+
+
+def _chosen(flown: list[Placed], first: int, frames: int | None) -> tuple[Placed, ...]:
+    """So many frames from the first wanted one on."""
+    placed = [each for each in flown if each.frame >= first]
+    if not placed:
+        raise RenderError(f"--first {first}: the last frame is {flown[-1].frame}")
+    return tuple(placed[:frames])
 
 
 def _placed(sequence: str, target: Target, stride: int, swell: Swell | None, surroundings: Kind) -> list[Placed]:

@@ -115,3 +115,10 @@ class Stage:
                     T[:2, 3] = T_world_target[:2, 3] + r * np.array([np.cos(a), np.sin(a)])
                     found.append((models[int(rng.integers(len(models)))], T))
         return found
+
+    def stand_in(self, T_world_target: Matrix4, rng: np.random.Generator) -> list[tuple[Model, Matrix4]]:
+        """Another ship where the target would be, two times in three."""
+        if not self._ships or rng.random() < 1.0 / 3.0:
+            return []
+        T = T_world_target @ geometry.exp_se3(np.array([0.0, 0.0, 0.0, 0.0, 0.0, rng.uniform(0.0, 2.0 * np.pi)]))
+        return [(self._ships[int(rng.integers(len(self._ships)))], T)]

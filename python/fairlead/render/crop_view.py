@@ -55,6 +55,16 @@ def draw_view(X: Points3, camera: Camera, envelope: Envelope, size: int, rng: np
     return CropView(camera=cut, T_camera_target=T, native=native)
 
 
+def behind_camera(T_camera_target: Matrix4, T_world_target: Matrix4) -> Matrix4:
+    """The motion of the target, level and in its own frame, that takes it behind a camera that looks at it."""
+    T_world_camera = T_world_target @ geometry.inverse(T_camera_target)
+    d_world = T_world_camera[:3, 3] - T_world_target[:3, 3]
+    d_world = (2.0 + 3000.0 / np.linalg.norm(d_world)) * d_world * [1.0, 1.0, 0.0]
+    away = np.eye(4)
+    away[:3, 3] = T_world_target[:3, :3].T @ d_world
+    return away
+
+
 def crop_camera(camera: Camera, corner: np.ndarray, side: float, size: int) -> Camera:
     """The camera that sees the square of `side` px whose top-left **corner** (not centre) is given, in `size` px.
 

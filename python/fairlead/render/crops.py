@@ -6,7 +6,7 @@ import json
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from fairlead.io.coco import LabelledImage, label_json, write_coco
 from fairlead.opencv.filters import resized, write_image
 from fairlead.progress import ProgressFactory, silent
 from fairlead.render.crop_scene import CropScene, Stage
-from fairlead.render.crop_view import Envelope, draw_view
+from fairlead.render.crop_view import Envelope, behind_camera, draw_view
 from fairlead.render.disturbances import draw_obstacle, draw_sensor, smeared, tinted
 from fairlead.render.errors import RenderError
 from fairlead.render.images import LinearImage
@@ -54,8 +54,12 @@ class CropJob:
     quality: Quality = "draft"
     samples: int = 16
     """Light paths per pixel, full quality only."""
+    threads: int | None = None
+    """Of Cycles; one per core if None."""
     weather_share: float = 0.35
     """How many crops have weather [-]."""
+    empty_share: float = 0.0
+    """How many crops have no target in them, and often another ship in its place [-]."""
 
 
 def render_crops(job: CropJob, *, jobs: int = 1, progress: ProgressFactory = silent) -> int:
@@ -157,7 +161,8 @@ class CropMaker:
         from fairlead.render.cycles.tracer import Tracer
 
         stage, surroundings = self._stage, scene.surroundings
-        tracer = Tracer(self._renderer, stage.model, stage.painted, surroundings, self._job.samples)
+        job = self._job
+        tracer = Tracer(self._renderer, stage.model, stage.painted, surroundings, job.samples, job.threads)
         return lambda shot, seed: tracer.render(shot, scene.waves, seed)[0]
 
     def _crop(
@@ -172,8 +177,18 @@ class CropMaker:
             T_world_target=T_world_target,
             others=self._stage.others(T_world_target, rng),
         )
+        empty = np.random.default_rng([job.seed, number, 4])
+        if empty.random() < job.empty_share:
+            stand_in = self._stage.stand_in(T_world_target, empty)
+            away = behind_camera(shot.T_camera_target, T_world_target)
+            shot = replace(
+                shot,
+                T_camera_target=shot.T_camera_target @ away,
+                T_world_target=T_world_target @ away,
+                others=[*shot.others, *stand_in],
+            )
         image = light(shot, number)
-        seen = see(_moved(job.target, scene), view.camera, view.T_camera_target, scene.caster)
+        seen = see(_moved(job.target, scene), view.camera, shot.T_camera_target, scene.caster)
         visibility = np.array([{"outside": 0, "hidden": 1, "visible": 2}[state] for state in seen.states])
         picture, covered = self._photograph(image, shot, scene, rng)
         for k in np.nonzero(visibility == 2)[0]:
@@ -182,8 +197,7 @@ class CropMaker:
             visibility[k] = 1 if covered[v, u] else 2
         name = f"images/{number:06d}.jpg"
         write_image(job.folder / name, np.ascontiguousarray(picture[..., ::-1]), quality=int(rng.integers(70, 97)))
-        low, high = np.nanmin(seen.pixels, axis=0), np.nanmax(seen.pixels, axis=0)
-        low, high = np.clip(low, -0.5, job.size - 0.5), np.clip(high, -0.5, job.size - 0.5)
+        low, high = _box(seen.pixels, job.size)
         return label_json(
             LabelledImage(
                 number=number,
@@ -194,7 +208,7 @@ class CropMaker:
                 visibility=tuple(visibility.tolist()),
                 box=(float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1])),
                 K=view.camera.K,
-                T_camera_target=view.T_camera_target,
+                T_camera_target=shot.T_camera_target,
             )
         )
 
@@ -239,3 +253,12 @@ def _enlarged(picture: Picture, size: int) -> Picture:
     if len(picture) == size:
         return picture
     return np.clip(np.round(resized(picture.astype(np.float32), size, size)), 0, 255).astype(np.uint8)
+
+
+def _box(pixels: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Top-left and bottom-right of the landmarks in the crop [px]; zeros where the target is behind the camera."""
+    if np.isnan(pixels).all():
+        return np.zeros(2), np.zeros(2)
+    ends = np.nanmin(pixels, axis=0), np.nanmax(pixels, axis=0)
+    low, high = (np.clip(end, -0.5, size - 0.5) for end in ends)
+    return low, high

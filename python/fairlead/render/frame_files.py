@@ -3,6 +3,7 @@
 """The files of one frame of a sequence, and whether they are all there."""
 
 from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
 
@@ -66,14 +67,16 @@ def save_linear(folder: Path, frame: int, image: LinearImage, truth: TruthImage)
     """Half precision, compressed; whole or not at all."""
     path = linear_path(folder, frame)
     part = path.with_name(f".{path.name}.part")
-    with part.open("wb") as stream:
-        np.savez_compressed(
-            stream,
-            radiance=np.minimum(image.radiance, 6e4).astype(np.float16),
-            distance=image.distance.astype(np.float16),
-            mask=truth.mask,
-            depth=truth.depth,
-        )
+    arrays = {
+        "radiance": np.minimum(image.radiance, 6e4).astype(np.float16),
+        "distance": image.distance.astype(np.float16),
+        "mask": truth.mask,
+        "depth": truth.depth,
+    }
+    with ZipFile(part, "w", ZIP_DEFLATED, compresslevel=1) as archive:  # numpy's level takes twice as long
+        for name, array in arrays.items():
+            with archive.open(f"{name}.npy", "w") as stream:
+                np.lib.format.write_array(stream, array, allow_pickle=False)
     part.replace(path)
 
 

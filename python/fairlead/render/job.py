@@ -49,6 +49,8 @@ class Job:
     quality: Quality = "full"
     samples: int = 16
     """Light paths per pixel, full quality only."""
+    threads: int | None = None
+    """Of Cycles; one per core if None."""
     setting: Setting = Setting()
     weather: Weather | None = None
     seed: int = 0

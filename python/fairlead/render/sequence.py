@@ -18,7 +18,7 @@ from fairlead.render.images import LinearImage, TruthImage
 from fairlead.render.job import Backend, Job, horizon, open_backend
 from fairlead.render.raycast import RayCaster
 from fairlead.render.sensor import Sensor, develop, exposure_for
-from fairlead.render.truth_tables import write_bop_tables, write_truth_tables
+from fairlead.render.truth_tables import write_bop_tables, write_stamps, write_truth_tables
 from fairlead.render.weather import Circumstances, apply_weather
 
 
@@ -31,6 +31,7 @@ def render_sequence(job: Job, *, jobs: int = 1, progress: ProgressFactory = sile
     caster = RayCaster(surface)
     make_folders(job.folder, depth=job.depth, linear=_keeps_linear(job))
     write_truth_tables(job.folder, job.target, job.camera, job.placed, caster)
+    write_stamps(job.folder, job.placed)
     missing = [k for k, p in enumerate(job.placed) if not is_done(job.folder, p.frame, depth=job.depth)]
     with progress("render", lambda: len(missing)) as advance:
         for _ in _rendered(job, missing, jobs):

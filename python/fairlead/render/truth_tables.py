@@ -65,7 +65,7 @@ def _state(beyond_px: float, free: bool) -> State:  # noqa: FBT001
 def write_truth_tables(
     folder: Path, target: Target, camera: Camera, placed: Sequence[Placed], caster: RayCaster
 ) -> None:
-    """truth.csv, target_true.toml, camera.yaml, landmarks_true.csv, observations_true.csv, rgb/stamps.csv."""
+    """truth.csv, target_true.toml, camera.yaml, landmarks_true.csv, observations_true.csv."""
     save_camera(folder / "camera.yaml", camera)
     exactly = replace(target, covariance=np.zeros_like(target.covariance), mesh=None)
     save_target(folder / "target_true.toml", exactly)
@@ -86,6 +86,10 @@ def write_truth_tables(
             )
             views.append(_view(target, p, seen))
     write_views(folder / "observations_true.csv", views)
+
+
+def write_stamps(folder: Path, placed: Sequence[Placed]) -> None:
+    """rgb/stamps.csv."""
     with CsvWriter(folder / "rgb" / "stamps.csv", ("image", "stamp_ns")) as writer:
         writer.write_rows([[picture_path(folder, p.frame).name, p.stamp_ns] for p in placed])
 

@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float64
 
+from fairlead.raycast import visible_from
 from fairlead.simulate.limits import expect, expect_at_least_zero, expect_share
 from fairlead.simulate.outages import draw_outages
-from fairlead.simulate.raycast import visible_from
 from fairlead.simulate.rotations import Times
 from fairlead.simulate.streams import Streams
 from fairlead.types import Camera, Points3, Target

@@ -4,6 +4,7 @@
 
 import dataclasses
 import logging
+import time
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
@@ -15,7 +16,7 @@ from fairlead.io.target import save_target
 from fairlead.io.timing import Timing
 from fairlead.sinks.csv import PoseSink, TimingSink
 from fairlead.sinks.model import ModelHistorySink, ModelSink
-from fairlead.sinks.sink import Sink
+from fairlead.sinks.sink import Outcome, OutcomeSink, Sink
 from fairlead.sinks.tum import TumSink
 from fairlead.types import Camera, Estimate, PoseEstimator, Target, View
 
@@ -23,7 +24,7 @@ _log = logging.getLogger(__name__)
 
 WRITTEN = (
     *("run.json", "target.toml", "target.npz", "camera.yaml", "observations.csv", "poses.csv", "timing.csv"),
-    *("trajectory.tum", "target_refined.toml", "target_refined.npz"),
+    *("trajectory.tum", "target_refined.toml", "target_refined.npz", "poses.parquet"),
     *("model_history.csv", "metrics.json", "errors.csv", "report.html"),
 )
 """Files that a run, and its evaluation, leave in its folder."""
@@ -36,6 +37,7 @@ class RunFolder:
         self._path = path
         self._record = record
         self._sinks: list[Sink] = []
+        self._outcome_sinks: list[OutcomeSink] = []
         self._stack = ExitStack()
         path.mkdir(parents=True, exist_ok=True)
         for name in WRITTEN[4:]:
@@ -60,17 +62,39 @@ class RunFolder:
         self._sinks.append(sink)
         self._stack.callback(sink.close)
 
+    def add(self, sink: OutcomeSink) -> None:
+        """One more place for everything about a frame; closed with the folder."""
+        self._outcome_sinks.append(sink)
+        self._stack.callback(sink.close)
+
     def write_view(self, view: View) -> None:
         """Take what was seen in one frame."""
         self._observations.write(view)
 
+    def write_outcome(self, outcome: Outcome, timing: Timing) -> None:
+        """Take everything about one frame."""
+        start_s = time.perf_counter()
+        self.write_view(outcome.view)
+        for sink in self._sinks:
+            sink.write(outcome.estimate)
+        for sink in self._outcome_sinks:
+            sink.write(outcome)
+        self._finish(outcome.estimate, dataclasses.replace(timing, sinks_ms=1e3 * (time.perf_counter() - start_s)))
+
     def write(self, estimate: Estimate, timing: Timing) -> None:
-        """Take what was found in one frame."""
+        """Take what was found in one frame whose view was written before."""
         for sink in self._sinks:
             sink.write(estimate)
+        self._finish(estimate, timing)
+
+    def _finish(self, estimate: Estimate, timing: Timing) -> None:
         self._timing.write(timing)
         with_pose = self._record.frames_with_pose + estimate.ok
         self._record = dataclasses.replace(self._record, frames=self._record.frames + 1, frames_with_pose=with_pose)
+
+    def count_dropped(self, images: int) -> None:
+        """Images of a live source that were dropped because newer ones had come."""
+        self._record = dataclasses.replace(self._record, frames_dropped=images)
 
     def save_model(self, model: Target) -> None:
         """Write target_refined.toml and .npz."""

@@ -43,13 +43,20 @@ class BopSource:
         """Number of images."""
         return self._images.count()
 
+    def listed(self) -> list[tuple[int, int, Path]]:
+        """Frame, stamp [ns] and file of every image; none is opened. Raises InputError."""
+        return [(self._number(path), stamp_ns, path) for _, stamp_ns, path in self._images.listed()]
+
     def __iter__(self) -> Iterator[ImageFrame]:
         for image in self._images:
-            stem = image.path.stem
-            if not (stem.isascii() and stem.isdigit()) or int(stem) not in self._numbers:
-                known = [f"{number:06d}" for number in self._numbers]
-                raise InputError(image.path, f"scene_camera.json has no such frame; {nearest(stem, known[:1000])}")
-            yield replace(image, frame=int(stem))
+            yield replace(image, frame=self._number(image.path))
+
+    def _number(self, path: Path) -> int:
+        stem = path.stem
+        if not (stem.isascii() and stem.isdigit()) or int(stem) not in self._numbers:
+            known = [f"{number:06d}" for number in self._numbers]
+            raise InputError(path, f"scene_camera.json has no such frame; {nearest(stem, known[:1000])}")
+        return int(stem)
 
 
 def image_folder(folder: Path) -> Path:

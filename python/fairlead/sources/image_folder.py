@@ -36,6 +36,10 @@ class ImageFolderSource:
         """Number of images."""
         return len(self._images)
 
+    def listed(self) -> list[tuple[int, int, Path]]:
+        """Frame, stamp [ns] and file of every image; none is opened."""
+        return [(frame, stamp_ns, path) for frame, (path, stamp_ns) in enumerate(self._images)]
+
     def __iter__(self) -> Iterator[ImageFrame]:
         for frame, (path, stamp_ns) in enumerate(self._images):
             width, height = opencv.image_size(path)

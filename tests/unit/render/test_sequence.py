@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import av
 import numpy as np
 import pytest
 
@@ -101,6 +102,30 @@ def test_a_frame_that_is_there_is_kept_and_one_that_is_missing_comes_back_the_sa
     assert "1 pictures made" in capsys.readouterr().out
     assert (again / "rgb" / "000050.png").read_bytes() == (flight / "rgb" / "000050.png").read_bytes()
     assert (again / "rgb" / "000100.png").read_bytes() == b"kept as it is"
+
+
+def test_a_part_of_a_flight_becomes_a_clip(flight: Path, small_camera: Path, tmp_path: Path) -> None:
+    """From frame 50 on: the same pictures; in the clip they count from 0, with their stamps."""
+    scene, clip = tmp_path / "scene", tmp_path / "clip"
+    arguments = ["render", "rendezvous-20", "--quality", "draft", "--camera", str(small_camera), "--stride", "50"]
+    part = ["--swell", "--first", "1", "--frames", "2", "--clip", str(clip), "--crf", "4"]
+    assert main([*arguments, *part, "-o", str(scene)]) == 0
+    assert [pose.frame for pose in read_truth(scene / "truth.csv")] == [50, 100]
+    whole, kept = read_truth(flight / "truth.csv")[1:], read_truth(clip / "truth.csv")
+    assert [pose.frame for pose in kept] == [0, 1]
+    for ours, theirs in zip(kept, whole, strict=True):
+        assert ours.stamp_ns == theirs.stamp_ns
+        assert np.array_equal(ours.T_camera_target, theirs.T_camera_target)
+    assert load_camera(clip / "camera.yaml").width == 96
+    assert load_target(clip / "target_true.toml").landmarks == load_target(flight / "target_true.toml").landmarks
+    views = list(read_views(clip / "observations_true.csv"))
+    assert [(view.frame, view.stamp_ns) for view in views] == [(0, 2_000_000_000), (1, 4_000_000_000)]
+    with av.open(str(clip / "clip.mkv")) as container:
+        decoded = list(container.decode(video=0))
+    assert [round(frame.pts * frame.time_base * 10**9) for frame in decoded] == [pose.stamp_ns for pose in kept]
+    for frame, number in zip(decoded, (50, 100), strict=True):
+        rendered = read_image(flight / "rgb" / f"{number:06d}.png").astype(float)
+        assert np.abs(frame.to_ndarray(format="bgr24") - rendered).mean() < 4.0
 
 
 def test_a_scene_folder_is_a_source(flight: Path, small_camera: Path) -> None:
@@ -217,19 +242,37 @@ def test_crops_are_labelled(name: str, graphics: None, repository: Path, shipped
     assert np.std([picture.mean() for picture in pictures]) > 1.0
 
 
+def test_crops_without_the_target_label_nothing(graphics: None, repository: Path, tmp_path: Path) -> None:
+    target = str(repository / "data" / "frigate" / "target.toml")
+    arguments = ["render", "crops", "--target", target, "--count", "4", "--size", "64"]
+    for share in ("0", "1"):
+        assert main([*arguments, "--empty", share, "-o", str(tmp_path / share)]) == 0
+    (_, with_it), (_, without) = (read_coco(tmp_path / share / "annotations.json") for share in ("0", "1"))
+    assert all(max(label.visibility) > 0 for label in with_it)
+    for label in without:
+        assert set(label.visibility) == {0}
+        assert not label.pixels.any()
+        assert geometry.transform(label.T_camera_target, np.zeros((1, 3)))[0, 2] < 0.0
+    for label in with_it:
+        there, gone = (read_image(tmp_path / share / label.file_name).astype(float) for share in "01")
+        assert np.abs(there - gone).max() > 20.0
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["nonsense"], "expected orbit-2.0"),
         (["crops", "--target", "{pen}"], "names no mesh"),
         (["nowhere/truth.csv"], "nowhere/truth.csv"),
+        (["landing", "--target", "{frigate}", "--first", "900"], "the last frame is 810"),
     ],
 )
 def test_what_cannot_be_rendered_is_one_line_and_2(
     arguments: list[str], message: str, repository: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     pen = str(repository / "data" / "marker_pen" / "target.toml")
-    told = [pen if a == "{pen}" else a for a in arguments]
+    frigate = str(repository / "data" / "frigate" / "target.toml")
+    told = [{"{pen}": pen, "{frigate}": frigate}.get(a, a) for a in arguments]
     camera = ["--camera", str(repository / "data" / "frigate" / "camera.yaml")]
     assert main(["render", *told, *camera, "-o", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err

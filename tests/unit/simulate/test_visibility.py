@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from fairlead.simulate import Dropout, Occlusion
 from fairlead.simulate.outages import draw_outages, first_of_run
-from fairlead.simulate.raycast import CHUNK, hidden, load_triangles
+from fairlead.raycast import CHUNK, hidden, load_triangles
 from fairlead.simulate.streams import Streams
 
 

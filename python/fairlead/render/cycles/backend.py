@@ -25,7 +25,7 @@ class CyclesBackend:
         self._renderer = Renderer(job.camera.width, job.camera.height)
         model = self._renderer.add(pack(surface, open_sky(RayCaster(surface), np.random.default_rng(0))))
         self._renderer.set_surroundings(surroundings)
-        self._tracer = Tracer(self._renderer, model, surface, surroundings, job.samples)
+        self._tracer = Tracer(self._renderer, model, surface, surroundings, job.samples, job.threads)
         s = job.setting
         at_sea = s.surroundings == "sea"
         self._waves = WaveField(s.wind_m_s, float(np.radians(s.wind_azimuth_deg)), job.seed) if at_sea else None

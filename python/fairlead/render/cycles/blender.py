@@ -25,8 +25,8 @@ def load_bpy() -> Any:
         ) from error
 
 
-def empty_scene(bpy: Any, samples: int) -> Any:
-    """A scene for the processor, one thread per core, few bounces, denoised, transparent where nothing is."""
+def empty_scene(bpy: Any, samples: int, threads: int | None) -> Any:
+    """A scene for the processor, few bounces, denoised, transparent where nothing is."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -45,6 +45,8 @@ def empty_scene(bpy: Any, samples: int) -> Any:
     scene.cycles.sample_clamp_indirect = 4.0
     scene.cycles.filter_width = 1.2
     scene.render.film_transparent = True
+    if threads is not None:
+        scene.render.threads_mode, scene.render.threads = "FIXED", threads
     scene.render.use_persistent_data = True
     layer = bpy.context.view_layer
     layer.use_pass_object_index = True

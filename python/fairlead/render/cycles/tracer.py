@@ -21,7 +21,7 @@ from fairlead.render.cycles.blender import (
 from fairlead.render.cycles.materials import light, painted, water
 from fairlead.render.cycles.sea import SeaPatch, foam_tile, image_box, make_patch
 from fairlead.render.errors import RenderError
-from fairlead.render.images import LinearImage, TruthImage
+from fairlead.render.images import Distance, LinearImage, TruthImage
 from fairlead.render.ocean import Waves
 from fairlead.render.raster.model import Model, Shot
 from fairlead.render.raster.renderer import Renderer
@@ -42,13 +42,19 @@ class Tracer:
     """
 
     def __init__(
-        self, renderer: Renderer, model: Model, surface: Surface, surroundings: Surroundings, samples: int
+        self,
+        renderer: Renderer,
+        model: Model,
+        surface: Surface,
+        surroundings: Surroundings,
+        samples: int,
+        threads: int | None = None,
     ) -> None:
         self._bpy = bpy = load_bpy()
         self._renderer, self._model, self._surroundings = renderer, model, surroundings
         self._hull, self._top = waterline(surface), float(surface.corners[1][2])
         self._foam = foam_tile()
-        self._scene = empty_scene(bpy, samples)
+        self._scene = empty_scene(bpy, samples, threads)
         self._camera = add_camera(bpy, self._scene)
         light(bpy, self._scene, surroundings)
         self._target = _target_object(bpy, self._scene, surface, surroundings.weathering)
@@ -57,10 +63,10 @@ class Tracer:
 
     def render(self, shot: Shot, waves: Waves | None, seed: int) -> tuple[LinearImage, TruthImage]:
         """Light and truth; the same seed gives the same light."""
-        drawn, truth = self._renderer.draw(shot, self._model), self._renderer.truth(shot, self._model)
+        truth = self._renderer.truth(shot, self._model)
         box = image_box(shot, self._hull, self._top)
         if box is None:
-            return drawn, truth
+            return self._renderer.draw(shot, self._model), truth
         behind = self._renderer.draw(shot, self._model, without_target=True)
         if waves is not None:
             self._set_sea(make_patch(shot, box, waves, self._surroundings, self._hull, self._foam))
@@ -68,7 +74,7 @@ class Tracer:
         place(self._target, shot.T_world_target)
         place(self._camera, camera_matrix(shot.T_camera_world))
         colour, index = self._trace(shot.camera, box, seed)
-        return self._composed(shot, box, colour, index, behind, drawn, truth)
+        return self._composed(shot, box, colour, index, behind, truth)
 
     def _set_sea(self, patch: SeaPatch | None) -> None:
         """Exchange the mesh of the near sea."""
@@ -117,14 +123,15 @@ class Tracer:
         colour: np.ndarray,
         index: np.ndarray,
         behind: LinearImage,
-        drawn: LinearImage,
         truth: TruthImage,
     ) -> tuple[LinearImage, TruthImage]:
         """Traced light through the air, over the sea of the fast renderer."""
         x0, y0, x1, y1 = box
         part = np.s_[y0:y1, x0:x1]
         alpha = np.clip(colour[..., 3:], 0.0, 1.0)
-        through = np.exp(-self._surroundings.air_per_m * drawn.distance[part])[..., None]
+        surface = np.isfinite(truth.depth)
+        distance = np.where(surface, truth.depth * ray_lengths(shot.camera), behind.distance)
+        through = np.exp(-self._surroundings.air_per_m * distance[part])[..., None]
         edges = haze(shot, self._surroundings)
         across = ((np.arange(x0, x1) + 0.5) / shot.camera.width)[None, :, None]
         air = np.asarray(edges["haze_left"]) * (1.0 - across) + np.asarray(edges["haze_right"]) * across
@@ -134,7 +141,14 @@ class Tracer:
         mask = np.zeros_like(truth.mask)
         mask[part] = np.round(index) == TARGET_INDEX
         depth = np.where(mask, truth.depth, np.float32(np.inf))
-        return LinearImage(radiance=radiance, distance=drawn.distance), TruthImage(mask=mask, depth=depth)
+        return LinearImage(radiance=radiance, distance=distance), TruthImage(mask=mask, depth=depth)
+
+
+def ray_lengths(camera: Camera) -> Distance:
+    """Distance of a surface over its z, at every pixel of a pinhole camera."""
+    x = (np.arange(camera.width) - camera.K[0, 2]) / camera.K[0, 0]
+    y = (np.arange(camera.height) - camera.K[1, 2]) / camera.K[1, 1]
+    return np.sqrt(1.0 + x[None, :] ** 2 + y[:, None] ** 2).astype(np.float32)
 
 
 def _target_object(bpy: Any, scene: Any, surface: Surface, weathering: float) -> Any:

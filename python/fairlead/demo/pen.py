@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""`fairlead demo`: a pen with eight tags, photographed by somebody else, whose drawing is wrong.
+"""`fairlead demo pen`: a pen with eight tags, photographed by somebody else, whose drawing is wrong.
 
 The corners were detected in 16 real photographs (data/marker_pen/README.md). Nobody surveyed where the tags really are.
 """
@@ -40,7 +40,7 @@ class Side:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DemoResult:
+class PenResult:
     """What the demo shows; reprojection errors are root mean squares over all corners [px]."""
 
     report: Path
@@ -59,7 +59,7 @@ class DemoResult:
     seconds: float
 
 
-def demo(config: DemoConfig) -> DemoResult:
+def demo_pen(config: DemoConfig) -> PenResult:
     """Solve the pen, judge the result on photographs that it has not seen, write the runs and their report."""
     start_s = time.monotonic()
     folder = shipped_data("marker_pen")
@@ -72,7 +72,7 @@ def demo(config: DemoConfig) -> DemoResult:
     refined = load_target(runs["refine"] / "target_refined.toml")
     joint = read_poses(runs["refine"] / "poses.csv")
     half = refine(views[::2], target, camera).model
-    return DemoResult(
+    return PenResult(
         report=evaluate_runs(runs, output=config.output),
         photographs=len(views),
         corners=sum(len(view.landmarks) for view in views),

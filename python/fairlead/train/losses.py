@@ -1,0 +1,52 @@
+# SPDX-FileCopyrightText: fairlead contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is minimised. docs/networks.md section 3."""
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from fairlead.train.labels import Batch
+from fairlead.train.networks.prediction import Prediction
+
+HIDDEN_WEIGHT = 0.3
+"""Of a hidden landmark: where it must be is told by the rest of the ship, but less well."""
+
+
+def landmark_weight(batch: Batch) -> Tensor:
+    """(b, n): 0 outside, HIDDEN_WEIGHT hidden, 1 visible."""
+    return torch.where(batch.visibility == 2, 1.0, torch.where(batch.visibility == 1, HIDDEN_WEIGHT, 0.0))
+
+
+def mean_of(values: Tensor, weight: Tensor) -> Tensor:
+    """Weighted mean; 0 where there is no weight."""
+    return (values * weight).sum() / weight.sum().clamp_min(1.0)
+
+
+def whitened(prediction: Prediction, batch: Batch, *, detach_mean: bool = True) -> Tensor:
+    """(b, n, 2): L^-1 (z - pixels)."""
+    mean = prediction.pixels.detach() if detach_mean else prediction.pixels
+    e = batch.pixels - mean
+    l11, l22 = prediction.cholesky[..., 0].exp(), prediction.cholesky[..., 1].exp()
+    first = e[..., 0] / l11
+    return torch.stack([first, (e[..., 1] - prediction.cholesky[..., 2] * first) / l22], dim=-1)
+
+
+def covariance_loss(prediction: Prediction, batch: Batch) -> Tensor:
+    """(b, n): negative log of Student's t with 4 degrees of freedom at the error of a fixed mean [nat].
+
+    log det L + 3 log(1 + s / 4), s the squared whitened error: a Gaussian would pay any price for one gross error.
+    """
+    s = whitened(prediction, batch).square().sum(-1)
+    return prediction.cholesky[..., 0] + prediction.cholesky[..., 1] + 3.0 * torch.log1p(0.25 * s)
+
+
+def visibility_loss(prediction: Prediction, batch: Batch) -> Tensor:
+    """(b, n): cross entropy of being seen [nat]."""
+    seen = (batch.visibility == 2).to(prediction.visible.dtype)
+    return F.binary_cross_entropy_with_logits(prediction.visible, seen, reduction="none")
+
+
+def distance_loss(prediction: Prediction, batch: Batch) -> Tensor:
+    """(b, n): Huber's loss of the error, 1 px at the corner [px]."""
+    return F.smooth_l1_loss(prediction.pixels, batch.pixels, reduction="none", beta=1.0).sum(-1)
