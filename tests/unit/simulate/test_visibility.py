@@ -10,9 +10,9 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fairlead.raycast import CHUNK, hidden, load_triangles
 from fairlead.simulate import Dropout, Occlusion
 from fairlead.simulate.outages import draw_outages, first_of_run
-from fairlead.raycast import CHUNK, hidden, load_triangles
 from fairlead.simulate.streams import Streams
 
 
