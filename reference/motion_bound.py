@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Causal Bayesian bound on a smooth path: what all views so far can tell of the newest pose, docs/bound.md eq. (19)-(20).
+"""Causal Bayesian bound on a smooth path: what all views so far tell of the newest pose, docs/bound.md eq. (19)-(20).
 
 A Kalman filter at the truth over landmarks, and position, velocity and acceleration of the camera in the target frame
 (white noise on the jerk); attitudes are free in every view.

@@ -17,7 +17,8 @@ constexpr double kRecent = 0.4;   // [s] the same, so that the onset of a turn i
 constexpr double kBelief = 1.0;   // [nats] per decade by which the told density is preferred
 constexpr double kSpeed = 200.0;  // [m/s] and
 constexpr double kTurn = 50.0;    // [m/s^2] before anything was seen
-constexpr double kCaution = 2.0;  // times the density that the likelihoods say: too rough costs little
+constexpr double kRecentBelief = 3.0;  // [nats] the same for the short memory, which is noisy
+constexpr double kCaution = 2.0;       // times the density that the likelihoods say: too rough costs little
 
 }  // namespace
 
@@ -65,10 +66,11 @@ void DensityBank::observe(double dt, const Vec3& position, const Mat33& covarian
 
 /// Geometric mean of the densities, weighed by likelihood and by how near they are to the told one.
 double DensityBank::mean(double Filter::* log_likelihood) const noexcept {
+    const double belief = log_likelihood == &Filter::recent ? kRecentBelief : kBelief;
     std::array<double, kFilters> weights;
     for (int i = 0; i < kFilters; ++i)
         weights[static_cast<std::size_t>(i)] =
-            filters_[static_cast<std::size_t>(i)].*log_likelihood - kBelief * std::abs(i - kBelow);
+            filters_[static_cast<std::size_t>(i)].*log_likelihood - belief * std::abs(i - kBelow);
     const double best = *std::max_element(weights.begin(), weights.end());
     double sum = 0.0;
     double log_density = 0.0;

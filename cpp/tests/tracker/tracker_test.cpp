@@ -107,3 +107,34 @@ BOOST_AUTO_TEST_CASE(order_of_observations_is_irrelevant_and_runs_repeat_bit_by_
         BOOST_TEST(nees(difference(a.T_camera_target, c.T_camera_target), a.covariance) < 0.04);
     }
 }
+
+BOOST_AUTO_TEST_CASE(prediction_looks_where_the_target_will_be_and_changes_nothing) {
+    const Scene scene = make_scene(20, 60, 1.5, 0.1, 0.1, 26);
+    Tracker tracker(scene.camera, scene.X_told, independent_prior(scene, 0.1));
+    Tracker undisturbed(scene.camera, scene.X_told, independent_prior(scene, 0.1));
+    BOOST_TEST(!tracker.predict(0).ok());  // nothing found yet
+    constexpr std::size_t kAhead = 10;
+    const auto bow = static_cast<std::size_t>(0);
+    double carried = 0.0, left = 0.0;  // [px] error of where a landmark is looked for
+    for (std::size_t k = 0; k + kAhead < scene.views.size(); ++k) {
+        const std::int64_t stamp = kFrame * static_cast<std::int64_t>(k);
+        const Estimate e = tracker.update(stamp, scene.views[k]);
+        const Estimate ahead = tracker.predict(stamp + kFrame * static_cast<std::int64_t>(kAhead));
+        BOOST_TEST((ahead.status == Status::coasting));
+        BOOST_TEST((ahead.covariance - e.covariance).trace() > 0.0);
+        BOOST_TEST((undisturbed.update(stamp, scene.views[k]).covariance.array() == e.covariance.array()).all());
+        Vec2 truth, there, here;
+        const Vec3& X = scene.X_true[bow];
+        BOOST_REQUIRE(scene.camera.project(scene.T_true[k + kAhead] * X, truth));
+        BOOST_REQUIRE(scene.camera.project(ahead.T_camera_target * X, there));
+        BOOST_REQUIRE(scene.camera.project(e.T_camera_target * X, here));
+        if (k < 20) continue;  // the rate is taken over half a second
+        carried += (there - truth).norm();
+        left += (here - truth).norm();
+    }
+    BOOST_TEST(carried < 0.5 * left);
+    const std::int64_t last = kFrame * static_cast<std::int64_t>(scene.views.size() - kAhead - 1);
+    BOOST_TEST((tracker.predict(last - 1).reason == Reason::stamp));
+    BOOST_TEST(!tracker.predict(last + 510'000'000).ok());
+    BOOST_TEST(tracker.predict(last + 510'000'000).covariance.hasNaN());
+}
