@@ -125,6 +125,14 @@ def measure(observed: Observed) -> Measured | None:
     )
 
 
+def correlation_time_s(observed: Observed, inefficiency: float) -> float:
+    """The time that makes a frame count for 1/c of an independent one, docs/motion.md eq. (12) solved for it [s]."""
+    interval_s = 1e-9 * float(np.median(np.diff(observed.stamps_ns))) if len(observed.stamps_ns) > 1 else 0.0
+    if inefficiency <= 1.0 or interval_s <= 0.0:
+        return 0.0
+    return interval_s / float(np.log((inefficiency + 1.0) / (inefficiency - 1.0)))
+
+
 def _squares(observed: Observed) -> np.ndarray:
     """e^T S^-1 e, (k, n); NaN where there is nothing or S is no covariance."""
     S, e = observed.covariances, observed.errors

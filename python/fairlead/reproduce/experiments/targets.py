@@ -10,7 +10,7 @@ from fairlead.reproduce.content import Cell, Column, Row, Table
 from fairlead.reproduce.context import Context, Seeds
 from fairlead.reproduce.detections import Network
 from fairlead.reproduce.measured import Measured
-from fairlead.reproduce.methods import EPNP, LABELS, ONLINE, WINDOW
+from fairlead.reproduce.methods import EPNP, LABELS, ONLINE, TOLD, WINDOW
 from fairlead.reproduce.scores import Paired, on_common_frames, paired, rms_over, score
 from fairlead.reproduce.sequences import Sequence
 
@@ -67,7 +67,7 @@ def _bound_cells(context: Context, sequence: Sequence, network: Network, seeds: 
     if bounds is None:
         return {}
     scores = [score(each[method], flight) for each, flight in zip(seeds.tracks, seeds.flights, strict=True)]
-    floors = (bounds.causal, bounds.causal_alike) if method == ONLINE else (bounds.white, bounds.alike)
+    floors = (bounds.causal, bounds.causal_alike) if method in (ONLINE, TOLD[ONLINE]) else (bounds.white, bounds.alike)
     cells: dict[str, Cell] = {}
     for kind, floor in zip(("bound", "alike"), floors, strict=True):
         least = {"rotation": _rms(floor.rotation_rms_deg), "translation": _rms(floor.translation_rms_m)}
