@@ -30,7 +30,6 @@ LOOKS = {
     ONLINE: Look(colour=COLOURS["map"], width=1.7),
     BATCH: Look(colour=COLOURS["refine"], width=1.7),
     TOLD[ONLINE]: Look(colour=COLOURS["map"], dashes=(0, (3, 1.5)), width=1.3),
-    TOLD[BATCH]: Look(colour=COLOURS["refine"], dashes=(0, (3, 1.5)), width=1.3),
     TRUE: Look(colour=INK, dashes=(0, (1, 1.5)), width=1.1),
     BOUND: Look(colour=COLOURS["bound"], dashes=(0, (4, 2)), width=1.2),
 }
