@@ -79,7 +79,7 @@ _COLUMNS = (
 _CANNOT = (
     "marginalisation: what leaves the window is always compressed; the sizes of the window show what relinearising "
     "is worth",
-    "the robust loss as a whole: with a threshold that is never reached the tracker finds no pose; at 10 sigma it is here",
+    "the robust loss as a whole: with a threshold that is never reached the tracker finds no pose",
     "noise estimation: the common factor of the variances is always estimated",
     "the model prior as a whole: without it the estimator is the published window of table 3",
 )
