@@ -40,7 +40,7 @@ def bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0) -> Bou
     """All views together; `factor`: of the variances; `inefficiency`: frames that say as much as one.
 
     Errors that stay for a while weigh on what the views say together, not on what each says alone: the covariance with
-    variances times c, less the (c - 1) times too much that it gives each single view, docs/reproduce.md eq. (3).
+    variances times c, less the (c - 1) times too much that it gives each single view, docs/reproduce.md eq. (4).
     """
     P0 = flight.told.covariance
     poses, X = _solve(flight, P0, factor * inefficiency)

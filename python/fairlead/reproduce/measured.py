@@ -45,7 +45,7 @@ class Measured:
     found: float
     """Share of the visible landmarks that were reported."""
     outliers: float
-    """Share of the reported ones beyond the 99.9 % ellipse of the scaled covariance."""
+    """Share of the reported ones beyond the 99.9 % ellipse, of the told covariance or of one that fits the median."""
     factor: float
     """What the told variances must be multiplied by, docs/reproduce.md eq. (1)."""
     inside_50: float
@@ -106,7 +106,8 @@ def measure(observed: Observed) -> Measured | None:
         return None
     seen, hidden = length[reported & observed.visible], length[reported & ~observed.visible]
     squares = _squares(observed)[reported]
-    factor = float(np.median(squares)) / _MEDIAN
+    limit = _OUTLIER * max(float(np.median(squares)) / _MEDIAN, 1.0)
+    factor = 0.5 * float(squares[squares <= limit].mean())
     inside = [float((squares <= chi2.ppf(share, 2)).mean()) for share in (0.5, 0.9, 0.99)]
     return Measured(
         mean_px=float(seen.mean()) if seen.size else np.nan,
@@ -115,7 +116,7 @@ def measure(observed: Observed) -> Measured | None:
         p95_px=float(np.quantile(seen, 0.95)) if seen.size else np.nan,
         hidden_px=float(hidden.mean()) if hidden.size else np.nan,
         found=float(reported[observed.visible].mean()) if observed.visible.any() else np.nan,
-        outliers=float((squares > _OUTLIER * factor).mean()),
+        outliers=float((squares > limit).mean()),
         factor=factor,
         inside_50=inside[0],
         inside_90=inside[1],
@@ -123,6 +124,14 @@ def measure(observed: Observed) -> Measured | None:
         bias_px=_bias(observed),
         inefficiency=_inefficiency(observed, factor),
     )
+
+
+def correlation_time_s(observed: Observed, inefficiency: float) -> float:
+    """The time that makes a frame count for 1/c of an independent one, docs/motion.md eq. (12) solved for it [s]."""
+    interval_s = 1e-9 * float(np.median(np.diff(observed.stamps_ns))) if len(observed.stamps_ns) > 1 else 0.0
+    if inefficiency <= 1.0 or interval_s <= 0.0:
+        return 0.0
+    return interval_s / float(np.log((inefficiency + 1.0) / (inefficiency - 1.0)))
 
 
 def _squares(observed: Observed) -> np.ndarray:

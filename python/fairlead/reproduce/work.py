@@ -15,7 +15,7 @@ import numpy as np
 from fairlead import _core
 from fairlead.reproduce.detections import Detections
 from fairlead.reproduce.measured import Observed, in_order
-from fairlead.reproduce.methods import METHODS, Flight, Track, solve
+from fairlead.reproduce.methods import METHODS, TOLD, Flight, Track, solve
 from fairlead.reproduce.sequences import Sequence
 from fairlead.tracker import TrackerOptions
 from fairlead.types import RangeReading, View
@@ -53,6 +53,14 @@ def job_of(sequence: Sequence, detections: Detections, observed: Observed, seed:
     """All methods on one seed."""
     flight = flight_of(sequence, detections.views, observed, seed)
     return Job(flight=flight, name=f"{sequence.name}/{detections.network.name}/{seed:03d}")
+
+
+def told_job_of(sequence: Sequence, detections: Detections, observed: Observed, seed: int, stays_s: float) -> Job:
+    """Ours on one seed, told for how long the errors stay."""
+    flight = flight_of(sequence, detections.views, observed, seed)
+    name = f"{sequence.name}/{detections.network.name}/told-{seed:03d}"
+    options = dataclasses.replace(TrackerOptions(), correlation_time_s=stays_s)
+    return Job(flight=flight, name=name, methods=tuple(TOLD), options=options)
 
 
 def run_job(job: Job, folder: Path) -> dict[str, Track]:

@@ -103,6 +103,9 @@ def _save(folder: Path, picture: Picture) -> dict[str, str]:
     return {**record, "file": f"{FIGURES}/{png.name}", "svg": f"{FIGURES}/{svg.name}"}
 
 
+_TABLE = {"head", "cells", "missed", "intervals"}
+
+
 def read_sections(folder: Path, order: Sequence[str]) -> list[dict[str, Any]]:
     """The records that are there, in this order. Raises InputError for one that is none."""
     records: list[dict[str, Any]] = []
@@ -112,6 +115,7 @@ def read_sections(folder: Path, order: Sequence[str]) -> list[dict[str, Any]]:
             try:
                 record = json.loads(path.read_text(encoding="utf-8"))
                 missing = {"name", "title", "facts", "tables", "pictures"} - set(record)
+                missing |= _TABLE - set.intersection(_TABLE, *map(set, record.get("tables", ())))
             except (ValueError, TypeError) as error:
                 raise InputError(path, f"no record of a section: {error}") from error
             if missing:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fairlead.reproduce.bounds import bound, causal_bound
-from fairlead.reproduce.measured import Observed, measure, observe
+from fairlead.reproduce.measured import Observed, correlation_time_s, measure, observe
 from reference.bound import bayesian_bound
 
 
@@ -47,6 +47,22 @@ def test_errors_that_stay():
     assert found is not None
     assert found.bias_px == pytest.approx(2.0 * np.sqrt(2.0), rel=0.3)
     assert found.inefficiency > 50.0
+
+
+def test_errors_that_stay_for_a_time():
+    rng = np.random.default_rng(3)
+    observed = drawn(k=2000)
+    keep = np.exp(-0.2 / 1.5)
+    errors = np.empty_like(observed.errors)
+    errors[0] = rng.standard_normal(errors.shape[1:])
+    for k in range(1, len(errors)):
+        errors[k] = keep * errors[k - 1] + np.sqrt(1.0 - keep**2) * rng.standard_normal(errors.shape[1:])
+    series = replace(observed, errors=errors, stamps_ns=200_000_000 * np.arange(2000))
+    found = measure(series)
+    assert found is not None
+    assert found.inefficiency == pytest.approx((1 + keep) / (1 - keep), rel=0.15)
+    assert correlation_time_s(series, found.inefficiency) == pytest.approx(1.5, rel=0.15)
+    assert correlation_time_s(series, 1.0) == 0.0
 
 
 def test_what_is_hidden_or_missing_is_counted_apart():

@@ -44,9 +44,9 @@ def landmarks(context: Context) -> Section:
     note = "Error: distance from the exact projection. Hidden landmarks are behind something, inside the image."
     trust = (
         "Shares inside the ellipses of the covariance that the network tells; right would be 50, 90, 99 %. The "
-        "variance factor makes the 50 % ellipse hold half of the errors; outliers are beyond the 99.9 % ellipse "
-        "after it. The last column is 1 for errors that are new in every frame, and the number of frames for errors "
-        "that stay."
+        "variance factor is the mean square of the errors over the told covariance, outliers (beyond the 99.9 % "
+        "ellipse) left out. The last column is 1 for errors that are new in every frame, and the number of frames "
+        "for errors that stay."
     )
     return Section(
         name="landmarks",

@@ -9,7 +9,7 @@ from fairlead.reproduce.content import Cell, Column, Row, Section, Table
 from fairlead.reproduce.context import Context
 from fairlead.reproduce.detections import Network
 from fairlead.reproduce.experiments.shared import NO_SEQUENCES, run_facts, undetected
-from fairlead.reproduce.methods import BATCH, BOUND, LABELS, ONLINE, WINDOW, Flight
+from fairlead.reproduce.methods import BOUND, LABELS, OURS, WINDOW, Flight
 from fairlead.reproduce.scores import score, summarise
 from fairlead.reproduce.sequences import Sequence
 from fairlead.types import Points3
@@ -33,7 +33,7 @@ def model(context: Context) -> Section:
     rows = [
         row
         for sequence, network in context.pairs()
-        for method in (WINDOW, ONLINE, BATCH, BOUND)
+        for method in (WINDOW, *OURS, BOUND)
         if (row := _row(context, sequence, network, method)) is not None
     ]
     note = (

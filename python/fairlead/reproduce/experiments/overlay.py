@@ -15,12 +15,12 @@ from fairlead.reproduce.context import Context
 from fairlead.reproduce.detections import Network
 from fairlead.reproduce.experiments.shared import NO_SEQUENCES, run_facts
 from fairlead.reproduce.figures.overlay import FINER, Scene, draw_overlays
-from fairlead.reproduce.methods import BATCH, EPNP, ONLINE, WINDOW
+from fairlead.reproduce.methods import EPNP, ONLINE, TOLD, WINDOW
 from fairlead.reproduce.pictures import picture_of
 from fairlead.reproduce.sequences import Sequence
 from fairlead.types import Camera, Matrix4
 
-_METHODS = (EPNP, WINDOW, ONLINE, BATCH)
+_METHODS = (EPNP, WINDOW, ONLINE, TOLD[ONLINE])
 _WHERE = 0.85
 """Share of the flight after which the image is taken."""
 

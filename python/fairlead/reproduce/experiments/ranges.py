@@ -40,9 +40,9 @@ def ranges(context: Context) -> Section:
         if network is not None:
             rows += [_row(context, sequence, network, ranged=ranged) for ranged in (False, True)]
     note = (
-        f"The images are rendered, the range is the true one with a noise of {SIGMA_M:g} m (1 sigma), {RATE_HZ:g} "
-        "reading a second. A range holds one of the seven directions that images leave free; attitude and model gain "
-        "little."
+        f"The images are rendered; the range is the true one with a noise of {SIGMA_M:g} m (1 sigma), {RATE_HZ:g} "
+        "reading a second. Of the seven directions that images leave free a range holds one, the scale. As it comes: "
+        "not told that the network's errors stay."
     )
     return Section(
         name="ranges",

@@ -9,9 +9,9 @@ from fairlead.reproduce.content import Cell, Column, Picture, Section, Table
 from fairlead.reproduce.context import Context, Seeds
 from fairlead.reproduce.experiments.shared import NO_SEQUENCES, run_facts
 from fairlead.reproduce.figures.dumbbells import draw_dumbbells
-from fairlead.reproduce.methods import BATCH, EPNP, ONLINE, WINDOW
+from fairlead.reproduce.methods import BATCH, EPNP, ONLINE, TOLD, WINDOW
 
-_METHODS = (EPNP, WINDOW, ONLINE, BATCH)
+_METHODS = (EPNP, WINDOW, ONLINE, TOLD[ONLINE], BATCH)
 
 
 def single_landmarks(context: Context) -> Section:
@@ -48,7 +48,13 @@ def single_landmarks(context: Context) -> Section:
     )
 
 
-_TITLES = ("told model [m]", "published window [m]", "fairlead, online [m]", "fairlead, batch [m]")
+_TITLES = (
+    "told model [m]",
+    "published window [m]",
+    "fairlead, online [m]",
+    "errors told to stay [m]",
+    "fairlead, batch [m]",
+)
 
 
 def _errors(seeds: Seeds, method: str) -> np.ndarray:
@@ -65,5 +71,5 @@ def _drawn(panels: dict[str, dict[str, np.ndarray]]) -> dict[str, dict[str, np.n
     cut: dict[str, dict[str, np.ndarray]] = {}
     for name, errors in panels.items():
         limit = 2.5 * float(errors[EPNP].max())
-        cut[name] = {method: np.minimum(errors[method], limit) for method in (EPNP, WINDOW, BATCH)}
+        cut[name] = {method: np.minimum(errors[method], limit) for method in (EPNP, WINDOW, BATCH, TOLD[ONLINE])}
     return cut

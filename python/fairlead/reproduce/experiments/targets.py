@@ -10,7 +10,7 @@ from fairlead.reproduce.content import Cell, Column, Row, Table
 from fairlead.reproduce.context import Context, Seeds
 from fairlead.reproduce.detections import Network
 from fairlead.reproduce.measured import Measured
-from fairlead.reproduce.methods import EPNP, LABELS, ONLINE, WINDOW
+from fairlead.reproduce.methods import BATCH, EPNP, LABELS, ONLINE, TOLD, WINDOW
 from fairlead.reproduce.scores import Paired, on_common_frames, paired, rms_over, score
 from fairlead.reproduce.sequences import Sequence
 
@@ -67,7 +67,7 @@ def _bound_cells(context: Context, sequence: Sequence, network: Network, seeds: 
     if bounds is None:
         return {}
     scores = [score(each[method], flight) for each, flight in zip(seeds.tracks, seeds.flights, strict=True)]
-    floors = (bounds.causal, bounds.causal_alike) if method == ONLINE else (bounds.white, bounds.alike)
+    floors = (bounds.causal, bounds.causal_alike) if method in (ONLINE, TOLD[ONLINE]) else (bounds.white, bounds.alike)
     cells: dict[str, Cell] = {}
     for kind, floor in zip(("bound", "alike"), floors, strict=True):
         least = {"rotation": _rms(floor.rotation_rms_deg), "translation": _rms(floor.translation_rms_m)}
@@ -107,13 +107,16 @@ def _reason(row: Row, measured: Measured) -> str:
     reasons: list[str] = []
     if measured.inefficiency > 2.0:
         within = all(_number(row.get(f"{name}_over_alike")) <= BOUND_LIMIT for name, _ in ERRORS)
-        end = "with that, the bound is kept" if within else "which the estimator is not told"
+        end = "with that, the bound is kept" if within else _END.get(str(row["method"]), "which it is not told")
         reasons.append(f"errors stay: {measured.inefficiency:.0f} frames say as much as one, {end}")
     if measured.outliers > 0.01:
         reasons.append(f"{100.0 * measured.outliers:.1f} % outliers, which the bound does not have")
     if not 0.5 <= measured.factor <= 2.0:
         reasons.append(f"told variances are off by a factor of {measured.factor:.2g}")
     return "; ".join(reasons) or "not found"
+
+
+_END = {TOLD[ONLINE]: "which it is told as a time", BATCH: "which the batch cannot be told"}
 
 
 def _number(value: Cell) -> float:

@@ -66,7 +66,8 @@ def running_rms(values: np.ndarray, half: int = HALF) -> np.ndarray:
 def _draw_model(axes: Axes, curves: Curves) -> None:
     axes.axhline(curves.told_m, color=LOOKS["epnp"].colour, lw=LOOKS["epnp"].width)
     for method, series in curves.model_m.items():
-        axes.plot(curves.seconds, series, color=LOOKS[method].colour, lw=LOOKS[method].width)
+        look = LOOKS[method]
+        axes.plot(curves.seconds, series, color=look.colour, ls=look.dashes, lw=look.width)
     axes.set_ylim(0.0, 2.5 * curves.told_m)
     axes.set_xlim(curves.seconds[0], curves.seconds[-1])
 
