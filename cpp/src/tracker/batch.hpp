@@ -60,7 +60,7 @@ class Batch {
     [[nodiscard]] double range_score() const;
 
     Refinement result();
-    Estimate estimate(const Candidate& candidate) const;
+    [[nodiscard]] Estimate estimate(const Candidate& candidate) const;
     [[nodiscard]] const window::ViewBlock& block(const Candidate& candidate) const;
     [[nodiscard]] Mat66 covariance(const Candidate& candidate) const;
 

@@ -66,6 +66,7 @@ void Batch::settle_on_path() {
 /// Of images, readings and prior.
 double Batch::cost_without_motion() {
     std::vector<SE3> T;
+    T.reserve(problem_.views.size());
     double on_path = 0.0;
     for (const Candidate& candidate : candidates_)
         if (candidate.on_path >= 0) on_path += cost(block(candidate), block(candidate).state.T_camera_target);
@@ -108,6 +109,7 @@ void Batch::estimate_bias() {
     const double step = range_bias_sigma_m_;
     const std::vector<Vec3> X = problem_.X;
     std::vector<SE3> T;
+    T.reserve(candidates_.size());
     for (const Candidate& candidate : candidates_)
         T.push_back(candidate.view < 0 ? SE3{} : block(candidate).state.T_camera_target);
     const double score = range_score();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "batch.hpp"
 #include "fairlead/tracker/range_gate.hpp"
@@ -50,9 +51,11 @@ window::RangeMeasurement moved(std::span<const Range> ranges, std::size_t i, dou
 
 std::vector<Candidate*> Batch::in_time() {
     std::vector<Candidate*> sorted;
+    sorted.reserve(candidates_.size());
     for (Candidate& candidate : candidates_) sorted.push_back(&candidate);
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const Candidate* a, const Candidate* b) { return a->stamp_ns < b->stamp_ns; });
+    std::sort(sorted.begin(), sorted.end(), [](const Candidate* a, const Candidate* b) {
+        return std::tie(a->stamp_ns, a) < std::tie(b->stamp_ns, b);
+    });
     return sorted;
 }
 
@@ -98,8 +101,9 @@ void Batch::add(const BatchReadings& readings) {
 
 /// Those to one landmark.
 void Batch::add_ranges(std::vector<Range> ranges) {
-    std::stable_sort(ranges.begin(), ranges.end(),
-                     [](const Range& a, const Range& b) { return a.stamp_ns < b.stamp_ns; });
+    std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) {
+        return std::tie(a.stamp_ns, a.range_m) < std::tie(b.stamp_ns, b.range_m);
+    });
     const std::vector<Candidate*> views = in_time();
     const std::vector<Range> kept = believed(ranges);
     const int before = believed_;

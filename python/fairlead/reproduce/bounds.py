@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fairlead.reproduce.methods import Flight, core_flights
-from fairlead.study.methods import FreeOptions
-from fairlead.tracker import TrackerOptions
+from fairlead.reproduce.methods import Flight, recorded
+from fairlead.study.recorded import solve_recorded
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,11 +58,8 @@ def causal_bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0)
 
 
 def _solve(flight: Flight, P0: np.ndarray, factor: float) -> tuple[np.ndarray, np.ndarray]:
-    n = P0.shape[0]
-    _, S, _, P, _ = core_flights(flight, P0, factor * flight.observed.covariances).solve(
-        "bound", FreeOptions().to_core(), TrackerOptions().to_core(), 1
-    )
-    return S.reshape(-1, 6, 6), P.reshape(n, n)
+    answer = solve_recorded("bound", recorded(flight, P0, factor * flight.observed.covariances))
+    return answer.pose_covariances, answer.X_covariance
 
 
 def _first(flight: Flight, k: int) -> Flight:

@@ -8,15 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fairlead import _core
 from fairlead.baselines.epnp import EpnpTracker
 from fairlead.baselines.free_window import WindowTracker
 from fairlead.baselines.observed import plain
 from fairlead.evaluate.alignment import model_alignment
 from fairlead.reproduce.measured import Observed
 from fairlead.sources.readings import SensorReadings
-from fairlead.study.methods import FreeOptions
-from fairlead.tracker import Tracker, TrackerOptions, core_camera, refine
+from fairlead.study.recorded import RecordedFlight, solve_recorded
+from fairlead.tracker import Tracker, TrackerOptions, refine
 from fairlead.types import Camera, Estimate, PoseEstimator, RangeReading, Target, View
 
 EPNP, WINDOW, ONLINE, BATCH, TRUE, BOUND = "epnp", "window", "map", "refine", "true-model", "bound"
@@ -160,36 +159,30 @@ def _track(
 def _true_model(flight: Flight) -> Track:
     """PnP on the true landmarks with a robust loss, started at the true pose, docs/study.md section 3."""
     k, n = flight.observed.pixels.shape[:2]
-    poses, S, _, _, counts = core_flights(flight, np.zeros((3 * n, 3 * n))).solve(
-        "true_model", FreeOptions().to_core(), TrackerOptions().to_core(), 1
-    )
-    T = poses.reshape(k, 4, 4)
-    known = np.isfinite(T).all(axis=(1, 2))
+    answer = solve_recorded("true_model", recorded(flight, np.zeros((3 * n, 3 * n))))
+    known = np.isfinite(answer.T_camera_target).all(axis=(1, 2))
     return Track(
-        T_camera_target=T,
-        covariances=S.reshape(k, 6, 6),
+        T_camera_target=answer.T_camera_target,
+        covariances=answer.pose_covariances,
         model_m=np.zeros(k),
         status=np.where(known, STATUSES.index("tracking"), STATUSES.index("lost")),
-        update_ms=np.full(k, 1e3 * float(counts[0, 1]) / k),
+        update_ms=np.full(k, 1e3 * answer.seconds / k),
         X=flight.X_true,
         X_covariance=np.empty((0, 0)),
     )
 
 
-def core_flights(flight: Flight, P0: np.ndarray, covariances: np.ndarray | None = None) -> _core.Flights:
-    """The flight in the core's form; `covariances`: instead of the told ones, (k, n, 2, 2)."""
-    S = flight.observed.covariances if covariances is None else covariances
-    usable = np.asarray(np.isfinite(flight.observed.pixels).all(axis=2) & np.isfinite(S).all(axis=(2, 3)))
-    return _core.Flights(
-        core_camera(plain(flight.camera)),
-        np.ascontiguousarray(flight.X_true[None]),
-        np.ascontiguousarray(flight.told.positions[None]),
-        np.ascontiguousarray(P0[None]),
-        flight.observed.stamps_ns,
-        np.ascontiguousarray(flight.T_true[None]),
-        np.ascontiguousarray(flight.T_true[None]),
-        np.ascontiguousarray(np.where(usable[..., None], flight.observed.pixels, np.nan)[None]),
-        np.ascontiguousarray(np.where(usable[..., None, None], S, np.eye(2))[None]),
+def recorded(flight: Flight, P0: np.ndarray, covariances: np.ndarray | None = None) -> RecordedFlight:
+    """The flight as the study takes it; `covariances`: instead of the told ones, (k, n, 2, 2)."""
+    return RecordedFlight(
+        camera=plain(flight.camera),
+        X_true=flight.X_true,
+        told=flight.told,
+        P0=P0,
+        stamps_ns=flight.observed.stamps_ns,
+        T_true=flight.T_true,
+        pixels=flight.observed.pixels,
+        covariances=flight.observed.covariances if covariances is None else covariances,
     )
 
 

@@ -7,16 +7,15 @@ import hashlib
 import json
 from collections.abc import Sequence as Names
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from fairlead import _core
 from fairlead.reproduce.detections import Detections
 from fairlead.reproduce.measured import Observed, in_order
 from fairlead.reproduce.methods import METHODS, TOLD, Flight, Track, solve
 from fairlead.reproduce.sequences import Sequence
+from fairlead.study.recorded import core_digest
 from fairlead.tracker import TrackerOptions
 from fairlead.types import RangeReading, View
 
@@ -107,9 +106,3 @@ def _key(job: Job) -> str:
     ):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()[:12]
-
-
-@cache
-def core_digest() -> str:
-    """Of the compiled estimator: another one gives other answers."""
-    return hashlib.sha256(Path(_core.__file__).read_bytes()).hexdigest()

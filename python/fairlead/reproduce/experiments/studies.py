@@ -9,9 +9,9 @@ from fairlead.config import StudyConfig, StudyKind
 from fairlead.reproduce import published
 from fairlead.reproduce.content import Cell, Column, Picture, Section, Table
 from fairlead.reproduce.context import Context
-from fairlead.reproduce.work import core_digest
 from fairlead.study.figures import draw_sensitivity, draw_sweep
 from fairlead.study.methods import METHODS
+from fairlead.study.recorded import core_digest
 from fairlead.study.rows import read_rows, results_of
 from fairlead.study.run import run_study
 from fairlead.study.scores import COLUMNS
