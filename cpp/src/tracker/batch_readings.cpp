@@ -102,7 +102,7 @@ void Batch::add(const BatchReadings& readings) {
 /// Those to one landmark.
 void Batch::add_ranges(std::vector<Range> ranges) {
     std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) {
-        return std::tie(a.stamp_ns, a.range_m) < std::tie(b.stamp_ns, b.range_m);
+        return std::tie(a.stamp_ns, a.range.range_m) < std::tie(b.stamp_ns, b.range.range_m);
     });
     const std::vector<Candidate*> views = in_time();
     const std::vector<Range> kept = believed(ranges);
