@@ -7,7 +7,8 @@ import pytest
 
 from fairlead.cli import main
 from fairlead.config import DemoConfig
-from fairlead.demo import PenResult, demo_pen, tag_side
+from fairlead.demo import SHOWN, PenResult, ShipResult, demo_pen, demo_ship, tag_side
+from fairlead.demo.show import show_ship
 from fairlead.io.run_record import read_run_record
 from fairlead.io.shipped import shipped_data
 from fairlead.io.target import load_target
@@ -40,6 +41,30 @@ def test_the_demo_prints_its_table(
     for word in ("reprojection [px rms]", "mean side of the tags [mm]", "13.00", str(result.report)):
         assert word in output.out
     assert output.err == ""
+
+
+@pytest.fixture(scope="module")
+def ship(tmp_path_factory: pytest.TempPathFactory) -> ShipResult:
+    return demo_ship(DemoConfig(output=tmp_path_factory.mktemp("ship")))
+
+
+def test_the_ship_is_tracked_from_pixels_to_poses(ship: ShipResult) -> None:
+    assert ship.frames == 200
+    assert read_run_record(ship.report.parent / "fairlead" / "run.json").frames_with_pose >= 195
+    ours, alone = ship.metrics["fairlead"], ship.metrics["epnp"]
+    assert ours["rotation_deg"] < alone["rotation_deg"]
+    assert ours["translation_m"] < alone["translation_m"]
+    assert ours["landmarks_m"] < ship.landmarks_told_m
+    assert ours["pose_nees"] < 3.0
+    assert ship.overlay.stat().st_size > 1_000_000
+
+
+def test_the_demo_shows_the_ship_beside_epnp(ship: ShipResult, capsys: pytest.CaptureFixture[str]) -> None:
+    show_ship(ship)
+    output = capsys.readouterr().out
+    for _, label in SHOWN:
+        assert label in output
+    assert str(ship.overlay) in output
 
 
 def test_side_of_tags_and_its_sigma_by_hand() -> None:

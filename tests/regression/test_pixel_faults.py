@@ -60,6 +60,8 @@ class Images:
 class Remembering:
     """A detector that looks at each image once."""
 
+    correlation_time_s = 0.0
+
     def __init__(self, target: Target) -> None:
         self._detector: Detector = detector_from_spec(DETECTOR, target)
 

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from fairlead.config import DemoConfig
 from fairlead.demo.pen import PenResult, demo_pen
-from fairlead.demo.ship import SHOWN, ShipResult, demo_ship
+from fairlead.demo.ship import DRAWS, SHOWN, ShipResult, demo_ship
 from fairlead.progress import ProgressFactory
 
 
@@ -23,7 +23,8 @@ def show_demo(config: DemoConfig, progress: ProgressFactory) -> None:
 
 def show_ship(result: ShipResult) -> None:
     """EPnP and this project's estimator against the truth."""
-    table = Table(title=f"Frigate, rendered: {result.frames} images of 1024 x 1024, landmarks told about a metre wrong")
+    title = f"Frigate, {result.frames} rendered images; means over {DRAWS} rough models"
+    table = Table(title=title)
     table.add_column("")
     table.add_column("EPnP", justify="right")
     table.add_column("fairlead", justify="right", style="bold")
@@ -31,7 +32,7 @@ def show_ship(result: ShipResult) -> None:
         cells = [result.metrics[name].get(key) for name in ("epnp", "fairlead")]
         table.add_row(label.replace("[", r"\["), *("" if cell is None else f"{cell:.3g}" for cell in cells))
     Console().print(table)
-    sys.stdout.write(f"The landmarks that were told are {result.landmarks_told_m:.2f} m off (rms).\n")
+    sys.stdout.write(f"The landmarks of a rough model are {result.landmarks_told_m:.2f} m off (rms).\n")
     sys.stdout.write(f"{result.frames_per_s:.0f} images a second, from the video to the pose.\n")
     sys.stdout.write(f"{result.overlay}\n{result.report} ({result.seconds:.1f} s)\n")
 

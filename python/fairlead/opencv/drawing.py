@@ -3,7 +3,7 @@
 """Drawing on images, to an eighth of a pixel: each function changes the image that it is given."""
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Float64, UInt8
 
 from fairlead.opencv.images import GreyImage, Image
 from fairlead.types import Pixels
@@ -64,7 +64,9 @@ def fill_region(mask: GreyImage, lines: list[Line]) -> None:
         cv2.fillPoly(mask, usable, 255, cv2.LINE_AA, _SHIFT)
 
 
-def resample(image: Image, size: tuple[int, int], scale: float, origin: tuple[float, float]) -> Image:
+def resample(
+    image: Image, size: tuple[int, int], scale: float, origin: tuple[float, float]
+) -> UInt8[np.ndarray, "rows columns 3"]:
     """A new image of `size` (width, height) whose pixel q shows origin + q / scale; edges are continued."""
     import cv2
 
