@@ -84,11 +84,12 @@ clean:
 
 # ---- set-up
 
+# The lock names everything but torch, which one of its packages wants: hence --no-deps.
 $(STAMPS)/environment: requirements/dev.txt
 	@$(PYTHON) -c 'import sys; v = sys.version_info; sys.exit(v < (3, 11) and f"fairlead needs Python 3.11 or newer, got {v[0]}.{v[1]}")'
 	@mkdir -p $(STAMPS)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements/dev.txt
+	$(BIN)/python -m pip install --quiet --no-deps --require-hashes --requirement requirements/dev.txt
 	@touch $@
 
 # torch has a build for each kind of processor and accelerator, so it is pinned by version and not by hash.
