@@ -16,7 +16,7 @@ from fairlead.annotate.surface import Surface
 from fairlead.cameras import project
 from fairlead.geometry import inverse, transform
 from fairlead.tracker import Refinement, refine
-from fairlead.types import Camera, Estimate, Matrix4, Pixels, Target, View
+from fairlead.types import Camera, Estimate, Matrix4, Pixels, Target, View, no_pose
 
 MIN_MARKS = 4
 """Fewer do not determine a pose."""
@@ -90,7 +90,7 @@ def solve_frame(labels: Labels, view: View, camera: Camera, surface: Surface | N
     if len(view.landmarks) < MIN_MARKS:
         few = f"{len(view.landmarks)} of at least {MIN_MARKS} landmarks marked"
         return FrameSolution(
-            estimate=without_pose(view, "too_few"),
+            estimate=no_pose(view, "lost", "too_few"),
             projected={},
             residuals={},
             in_sight=frozenset(),
@@ -184,23 +184,6 @@ def _bad_clicks(
             text += f": is it {labels.landmark(nearest).name}?"
         warnings.append(Warned(number=number, text=text))
     return warnings
-
-
-def without_pose(view: View, reason: str) -> Estimate:
-    """An estimate that says why there is none."""
-    return Estimate(
-        frame=view.frame,
-        stamp_ns=view.stamp_ns,
-        status="lost",
-        reason=reason,
-        T_camera_target=np.full((4, 4), np.nan),
-        covariance=np.full((6, 6), np.nan),
-        n_inliers=0,
-        reprojection_rms_px=float("nan"),
-        information_gained=0.0,
-        reset_counter=0,
-        inliers=(),
-    )
 
 
 def in_order(estimates: Sequence[Estimate]) -> list[Estimate]:

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """EPnP frame by frame on the model as it was given: what most people do, docs/baselines.md section 2."""
 
-from fairlead.baselines.observed import no_pose, observed, plain
+from fairlead.baselines.observed import observed, plain
 from fairlead.baselines.single_view import solve_view, tracked
 from fairlead.tracker import LandmarkIndex
-from fairlead.types import Camera, Estimate, Target, View
+from fairlead.types import Camera, Estimate, Target, View, no_pose
 
 
 class EpnpTracker:

@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fairlead import _core
-from fairlead.baselines.observed import Observed, no_pose, observed, plain
+from fairlead.baselines.observed import Observed, observed, plain
 from fairlead.baselines.single_view import SingleView, solve_view, tracked
 from fairlead.tracker import LandmarkIndex, core_camera
-from fairlead.types import Camera, Estimate, Matrix4, Points3, Poses, Target, View
+from fairlead.types import Camera, Estimate, Matrix4, Points3, Poses, Target, View, no_pose
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int64
 
 from fairlead.tracker import LandmarkIndex
-from fairlead.types import Camera, Estimate, PixelCovariances, Pixels, Status, View
+from fairlead.types import Camera, PixelCovariances, Pixels, View
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -39,20 +39,3 @@ def plain(camera: Camera) -> Camera:
     if camera.model == "equidistant" or camera.distortion.any():
         return camera
     return replace(camera, model="pinhole", distortion=np.empty(0))
-
-
-def no_pose(view: View, status: Status, reason: str) -> Estimate:
-    """An estimate that says why there is none."""
-    return Estimate(
-        frame=view.frame,
-        stamp_ns=view.stamp_ns,
-        status=status,
-        reason=reason,
-        T_camera_target=np.full((4, 4), np.nan),
-        covariance=np.full((6, 6), np.nan),
-        n_inliers=0,
-        reprojection_rms_px=float("nan"),
-        information_gained=0.0,
-        reset_counter=0,
-        inliers=(),
-    )

@@ -30,7 +30,6 @@ from fairlead.opencv.markers import (
 )
 from fairlead.opencv.pnp import MIN_POINTS, PnpSolution, epnp, ideal_pixels, ippe, refine, sqpnp
 from fairlead.opencv.pnp_views import epnp_views
-from fairlead.opencv.silhouettes import filled_triangles
 from fairlead.opencv.two_views import TwoViews, relative_pose
 
 __all__ = [
@@ -53,7 +52,6 @@ __all__ = [
     "fill_polygon",
     "fill_region",
     "fill_triangles",
-    "filled_triangles",
     "grey",
     "ideal_pixels",
     "image_size",

@@ -46,6 +46,7 @@ from fairlead.types.views import (
     PoseEstimator,
     TruthPose,
     View,
+    no_pose,
 )
 
 __all__ = [
@@ -81,4 +82,5 @@ __all__ = [
     "frozen_array",
     "is_covariance",
     "is_rigid",
+    "no_pose",
 ]

@@ -77,6 +77,23 @@ class Estimate:
         return self.status in ("tracking", "coasting")
 
 
+def no_pose(view: View, status: Status, reason: str) -> Estimate:
+    """An estimate that says why there is none."""
+    return Estimate(
+        frame=view.frame,
+        stamp_ns=view.stamp_ns,
+        status=status,
+        reason=reason,
+        T_camera_target=np.full((4, 4), np.nan),
+        covariance=np.full((6, 6), np.nan),
+        n_inliers=0,
+        reprojection_rms_px=float("nan"),
+        information_gained=0.0,
+        reset_counter=0,
+        inliers=(),
+    )
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TruthPose:
     """A pose known from elsewhere."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from fairlead.evaluate.pose import rotation_error_deg, translation_error_m
 from fairlead.geometry import project, transform
-from fairlead.opencv import filled_triangles
+from fairlead.opencv import fill_triangles
 from fairlead.reproduce import published
 from fairlead.reproduce.content import Picture, Section
 from fairlead.reproduce.context import Context
@@ -92,7 +92,9 @@ def silhouette(triangles: np.ndarray, camera: Camera, T_camera_target: Matrix4, 
     with np.errstate(invalid="ignore", divide="ignore"):
         pixels = np.where(p[:, 2:] > 0.0, project(camera, p), np.nan)
     fine = finer * (np.nan_to_num(pixels, nan=1e9) + 0.5) - 0.5
-    return filled_triangles(fine.reshape(-1, 3, 2), finer * camera.width, finer * camera.height)
+    mask = np.zeros((finer * camera.height, finer * camera.width), np.uint8)
+    fill_triangles(mask, fine.reshape(-1, 3, 2))
+    return mask > 0
 
 
 def _inset(mask: np.ndarray) -> tuple[int, int, int]:
