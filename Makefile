@@ -72,6 +72,15 @@ bench: setup
 	$(BIN)/python -m benchmarks
 	$(BIN)/python -m benchmarks.speed --output runs/speed
 
+## results  every table and figure of docs/results (ONLY="poses gap": some sections; hours without)
+RECORDINGS := $(wildcard $(or $(FAIRLEAD_SHARED_DATA),../shared/data))
+.PHONY: results
+results: setup
+	$(BIN)/fairlead demo -o runs/demo
+	cp runs/demo/demo.csv docs/results/demo.csv
+	$(BIN)/fairlead reproduce $(if $(ONLY),--only $(ONLY)) --cache runs/results/cache --weather runs/weather \
+	    $(if $(RECORDINGS),--real $(RECORDINGS)) -o docs/results
+
 ## docs     check that every equation that a source names exists, and every link of the pages
 .PHONY: docs
 docs: setup

@@ -233,13 +233,13 @@ class ReproduceConfig:
     only: tuple[str, ...] = ()
     """Only these sections, e.g. landmarks poses model times studies failures real."""
     sequences: tuple[Path, ...] = ()
-    """Folders of sequences with truth.csv, or such sequences; the clips that come along if not given."""
+    """Folders of sequences with truth.csv, or such sequences; the four flights that come along if not given."""
     networks: tuple[Path, ...] = ()
     """ONNX detectors; those that come along if not given."""
     real: Path | None = None
     """Folder with the recordings marker_pen and temple_ring."""
     weather: Path | None = None
-    """Folder with one sequence per weather, named KIND-STRENGTH, e.g. fog-0.5."""
+    """Folder with one sequence per weather, named KIND-STRENGTH, e.g. fog-0.4; an empty one is filled by rendering."""
     seeds: int | None = None
     """Told models a sequence."""
     study_runs: int | None = None

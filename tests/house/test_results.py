@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A number that a page quotes is that of docs/results, to the digits shown. docs/reproduce.md section 9."""
+"""A number that a page quotes is that of docs/results, to the digits shown. docs/reproduce.md section 11."""
 
 import csv
 import json

@@ -5,18 +5,16 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
-
 from fairlead.config import ReproduceConfig
 from fairlead.io.shipped import shipped_data
 from fairlead.io.target import load_target
 from fairlead.progress import ProgressFactory
 from fairlead.reproduce.bounds import Bound, bound, causal_bound
 from fairlead.reproduce.detections import Detections, Network, detect, networks_of
-from fairlead.reproduce.measured import Measured, Observed, correlation_time_s, measure, observe
-from fairlead.reproduce.methods import TOLD, Flight, Track
-from fairlead.reproduce.sequences import Sequence, find_sequences
-from fairlead.reproduce.work import flight_of, job_of, run_job, told_job_of
+from fairlead.reproduce.measured import Measured, Observed, measure, observe
+from fairlead.reproduce.methods import Flight, Track
+from fairlead.reproduce.sequences import ORDER, Sequence, find_sequences
+from fairlead.reproduce.work import flight_of, job_of, run_job
 from fairlead.types import Target
 
 Pair = tuple[str, str]
@@ -118,27 +116,14 @@ class Context:
             found = self.detections(sequence, network)
             assert found is not None
             observed = self.observed(sequence, network)
-            stays_s = self.errors_stay_s(sequence, network)
             jobs = [job_of(sequence, found, observed, seed) for seed in range(self.seeds)]
             tracks: list[dict[str, Track]] = []
             with self.progress(f"{sequence.name}, {network.name}", lambda: len(jobs)) as advance:
-                for seed, job in enumerate(jobs):
-                    told = told_job_of(sequence, found, observed, seed, stays_s)
-                    ours = {TOLD[name]: track for name, track in run_job(told, self.cache / "runs").items()}
-                    tracks.append(run_job(job, self.cache / "runs") | ours)
+                for job in jobs:
+                    tracks.append(run_job(job, self.cache / "runs"))
                     advance(1)
             self._seeds[key] = Seeds(flights=tuple(job.flight for job in jobs), tracks=tuple(tracks))
         return self._seeds[key]
-
-    def errors_stay_s(self, sequence: Sequence, network: Network) -> float:
-        """For how long a network's errors stay, by all other sequences; by this one where there is no other [s]."""
-        others = [each for each in self.sequences if each is not sequence and self.detections(each, network)]
-        times: list[float] = []
-        for each in others or [sequence]:
-            measured = self.measured(each, network)
-            if measured is not None:
-                times.append(correlation_time_s(self.observed(each, network), measured.inefficiency))
-        return float(np.median(times)) if times else 0.0
 
     def bounds(self, sequence: Sequence, network: Network) -> Bounds | None:
         """With the measured covariance; None where nothing was measured or some view alone determines no pose."""
@@ -160,7 +145,8 @@ class Context:
 
 
 def _shipped_clips() -> tuple[Path, ...]:
+    """Those of the published flights."""
     try:
-        return (shipped_data("clips"),)
+        return tuple(shipped_data("clips") / name for name in ORDER)
     except FileNotFoundError:
         return ()

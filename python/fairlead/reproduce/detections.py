@@ -16,6 +16,7 @@ import numpy as np
 
 from fairlead import run
 from fairlead.config import TrackConfig
+from fairlead.inputs import let_go, open_views, told_correlation
 from fairlead.io.errors import InputError
 from fairlead.io.observations import read_views
 from fairlead.io.run_record import read_run_record
@@ -23,6 +24,8 @@ from fairlead.io.target import save_target
 from fairlead.io.timing import read_timing
 from fairlead.progress import ProgressFactory
 from fairlead.reproduce.sequences import Sequence
+from fairlead.study.recorded import core_digest
+from fairlead.tracker import TrackerOptions
 from fairlead.types import View
 
 TABLES = "detections"
@@ -53,8 +56,8 @@ class Detections:
     views: tuple[View, ...]
     detect_ms: np.ndarray
     """Per frame, the first left out; empty for tables."""
-    digest: str
-    """Of the table."""
+    options: TrackerOptions
+    """What `track` and `refine` tell the estimator of this detector's errors."""
 
 
 def networks_of(paths: Iterable[Path], sequences: Iterable[Sequence]) -> list[Network]:
@@ -74,25 +77,29 @@ def detect(
     images = sequence.images if images is None else images
     table = sequence.folder / TABLES / f"{network.name}.csv"
     if network.path is None or (table.is_file() and images is None):
-        return _read(network, table, None) if table.is_file() else None
+        return _read(network, table, None, TrackerOptions()) if table.is_file() else None
     if images is None:
         return None
     folder = cache / f"{sequence.name}-{network.name}-{_key(sequence, network.path, images)}"
-    if not _is_done(folder):
-        _make(sequence, network.path, images, folder, progress)
-    return _read(network, folder / "observations.csv", folder / "timing.csv")
-
-
-def _make(sequence: Sequence, network: Path, images: Path, folder: Path, progress: ProgressFactory) -> None:
-    """Track with the network; half a folder is made anew."""
-    shutil.rmtree(folder, ignore_errors=True)
     told = folder.with_name(f"{folder.name}-told") / "target.toml"
-    told.parent.mkdir(parents=True, exist_ok=True)
-    save_target(told, sequence.told(0))
-    run.track(
-        TrackConfig(source=images, target=told, camera=sequence.camera_path, output=folder, detector=str(network)),
-        progress,
+    config = TrackConfig(
+        source=images, target=told, camera=sequence.camera_path, output=folder, detector=str(network.path)
     )
+    if not _is_done(folder):
+        shutil.rmtree(folder, ignore_errors=True)  # half a folder is made anew
+        told.parent.mkdir(parents=True, exist_ok=True)
+        save_target(told, sequence.told(0))
+        run.track(config, progress)
+    return _read(network, folder / "observations.csv", folder / "timing.csv", _told(config, sequence))
+
+
+def _told(config: TrackConfig, sequence: Sequence) -> TrackerOptions:
+    """By the same door as a user's run."""
+    source = open_views(config, sequence.told(0), sequence.camera)
+    try:
+        return told_correlation(source, TrackerOptions())
+    finally:
+        let_go(source)
 
 
 def _is_done(folder: Path) -> bool:
@@ -102,19 +109,19 @@ def _is_done(folder: Path) -> bool:
         return False
 
 
-def _read(network: Network, table: Path, timing: Path | None) -> Detections:
+def _read(network: Network, table: Path, timing: Path | None, options: TrackerOptions) -> Detections:
     times = [] if timing is None else [each.detect_ms for each in read_timing(timing)][1:]
     return Detections(
         network=network,
         views=tuple(read_views(table)),
         detect_ms=np.array(times, dtype=np.float64),
-        digest=hashlib.sha256(table.read_bytes()).hexdigest(),
+        options=options,
     )
 
 
 def _key(sequence: Sequence, network: Path, images: Path) -> str:
-    """Hash of everything that the table depends on but the program itself."""
-    digest = hashlib.sha256()
+    """Hash of everything that the table depends on, the estimator that leads the detector included."""
+    digest = hashlib.sha256(core_digest().encode("ascii"))
     files = [images] if images.is_file() else sorted(images.rglob("rgb/*"))
     for path in (network, sequence.camera_path, *files):
         digest.update(path.name.encode("utf-8") + b"\0")

@@ -48,6 +48,8 @@ class Measured:
     """Share of the reported ones beyond the 99.9 % ellipse, of the told covariance or of one that fits the median."""
     factor: float
     """What the told variances must be multiplied by, docs/reproduce.md eq. (1)."""
+    nees: float
+    """Mean of e^T S^-1 e / 2 over all that was reported, outliers inside: 1 is a true covariance."""
     inside_50: float
     inside_90: float
     inside_99: float
@@ -56,6 +58,8 @@ class Measured:
     """Root mean square over landmarks of the mean error vector over the sequence."""
     inefficiency: float
     """How many frames say as much as one, docs/reproduce.md eq. (2)."""
+    stays_s: float
+    """For how long errors stay, docs/reproduce.md eq. (3) [s]."""
 
 
 def observe(sequence: Sequence, views: Iterable[View]) -> Observed:
@@ -98,6 +102,23 @@ def in_order(sequence: Sequence, views: Iterable[View]) -> list[View]:
     return found
 
 
+def views_of(landmarks: tuple[str, ...], observed: Observed) -> tuple[View, ...]:
+    """The views that say what was observed."""
+    views: list[View] = []
+    for k, stamp_ns in enumerate(observed.stamps_ns.tolist()):
+        seen = np.flatnonzero(np.isfinite(observed.pixels[k]).all(axis=1)).tolist()
+        views.append(
+            View(
+                frame=k,
+                stamp_ns=stamp_ns,
+                landmarks=tuple(landmarks[j] for j in seen),
+                pixels=observed.pixels[k, seen],
+                covariances=observed.covariances[k, seen],
+            )
+        )
+    return tuple(views)
+
+
 def measure(observed: Observed) -> Measured | None:
     """None where nothing was observed."""
     length = np.linalg.norm(observed.errors, axis=2)
@@ -105,9 +126,9 @@ def measure(observed: Observed) -> Measured | None:
     if not reported.any():
         return None
     seen, hidden = length[reported & observed.visible], length[reported & ~observed.visible]
-    squares = _squares(observed)[reported]
-    limit = _OUTLIER * max(float(np.median(squares)) / _MEDIAN, 1.0)
+    squares, limit = _squares(observed)[reported], _limit(observed)
     factor = 0.5 * float(squares[squares <= limit].mean())
+    inefficiency = _inefficiency(observed, factor)
     inside = [float((squares <= chi2.ppf(share, 2)).mean()) for share in (0.5, 0.9, 0.99)]
     return Measured(
         mean_px=float(seen.mean()) if seen.size else np.nan,
@@ -118,12 +139,25 @@ def measure(observed: Observed) -> Measured | None:
         found=float(reported[observed.visible].mean()) if observed.visible.any() else np.nan,
         outliers=float((squares > limit).mean()),
         factor=factor,
+        nees=0.5 * float(squares.mean()),
         inside_50=inside[0],
         inside_90=inside[1],
         inside_99=inside[2],
         bias_px=_bias(observed),
-        inefficiency=_inefficiency(observed, factor),
+        inefficiency=inefficiency,
+        stays_s=correlation_time_s(observed, inefficiency),
     )
+
+
+def outlying(observed: Observed) -> np.ndarray:
+    """(k, n) bool: beyond the 99.9 % ellipse, of the told covariance or of one that fits the median."""
+    with np.errstate(invalid="ignore"):
+        return _squares(observed) > _limit(observed)
+
+
+def _limit(observed: Observed) -> float:
+    squares = _squares(observed)
+    return _OUTLIER * max(float(np.median(squares[np.isfinite(squares)])) / _MEDIAN, 1.0)
 
 
 def correlation_time_s(observed: Observed, inefficiency: float) -> float:

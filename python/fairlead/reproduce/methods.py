@@ -20,15 +20,12 @@ from fairlead.types import Camera, Estimate, PoseEstimator, RangeReading, Target
 
 EPNP, WINDOW, ONLINE, BATCH, TRUE, BOUND = "epnp", "window", "map", "refine", "true-model", "bound"
 METHODS = (EPNP, WINDOW, ONLINE, BATCH, TRUE)
-TOLD = {ONLINE: "map-told"}
-"""Ours once more, told for how long the errors of the network stay; the batch does not use it."""
-OURS = (ONLINE, TOLD[ONLINE], BATCH)
+OURS = (ONLINE, BATCH)
 LABELS = {
     EPNP: "EPnP",
     WINDOW: "published window",
     ONLINE: "fairlead, online",
     BATCH: "fairlead, batch",
-    TOLD[ONLINE]: "fairlead, online, errors told to stay",
     TRUE: "PnP, true model",
     BOUND: "Bayesian bound",
 }

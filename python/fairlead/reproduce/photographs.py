@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Real photographs: what the methods make of them. docs/reproduce.md section 7."""
+"""Real photographs: what the methods make of them. docs/reproduce.md section 8."""
 
 import time
 from collections.abc import Callable, Sequence

@@ -9,6 +9,7 @@ import numpy as np
 
 from fairlead.evaluate.failures import FAILURE_ROTATION_DEG, FAILURE_TRANSLATION_PERCENT, failed_frames
 from fairlead.evaluate.pose import range_m, rotation_error_deg, translation_error_m
+from fairlead.reproduce.bounds import Bound
 from fairlead.reproduce.methods import Flight, Track, model_error_m
 from fairlead.study.scores import normalised_squares, pose_squares
 from fairlead.study.summary import compare, describe
@@ -138,10 +139,21 @@ def paired(mine: Sequence[float], theirs: Sequence[float]) -> Paired:
     return Paired(ratio=comparison.ratio, low=comparison.low, high=comparison.high, worse=worse)
 
 
-def rms_over(rows: Sequence[dict[str, float]], name: str) -> float:
-    """Root mean square over seeds of a number that is a root mean square already."""
-    values = np.array([row[name] for row in rows])
-    return float(np.sqrt((values[np.isfinite(values)] ** 2).mean())) if np.isfinite(values).any() else float("nan")
+def over_bound(tracks: Sequence[Track], flights: Sequence[Flight], floor: Bound, first: int = 0) -> dict[str, float]:
+    """Root mean squares of rotation, translation and model over the bound's, from frame `first` on.
+
+    Over frames with a pose, then over seeds; a method that has none gets NaN.
+    """
+    errors = [errors_of(track, flight.T_true) for track, flight in zip(tracks, flights, strict=True)]
+    X = [_rms(np.linalg.norm(a.X - b.X_true, axis=1)) for a, b in zip(tracks, flights, strict=True)]
+    found = {
+        "rotation": [_rms(each.rotation_deg[first:]) for each in errors],
+        "translation": [_rms(each.translation_m[first:]) for each in errors],
+        "model": X,
+    }
+    least = {"rotation": _rms(floor.rotation_rms_deg[first:]), "translation": _rms(floor.translation_rms_m[first:])}
+    least["model"] = floor.model_rms_m
+    return {name: _rms(np.array(values)) / least[name] for name, values in found.items()}
 
 
 def _since_first(values: np.ndarray, rotation_deg: np.ndarray) -> float:

@@ -1,16 +1,15 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Flights at the level of landmarks: where each method breaks, docs/reproduce.md section 8."""
+"""Flights at the level of landmarks: where each method breaks, docs/reproduce.md section 9."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fairlead.reproduce.measured import Observed
+from fairlead.reproduce.measured import Observed, views_of
 from fairlead.reproduce.methods import Flight
 from fairlead.simulate import ArcScenario, ModelError, ObservationError, project_all
-from fairlead.types import Camera, Target, View
+from fairlead.types import Camera, Target
 
 INTERVAL_S = 0.5
 
@@ -54,7 +53,7 @@ def hard_flight(target: Target, camera: Camera, hardship: Hardship, seed: int) -
     told = replace(target, positions=X0, covariance=model.told_covariance(X0), mesh=None, touchdown=None, distances=())
     return Flight(
         camera=camera,
-        views=_views(target.landmarks, observed),
+        views=views_of(target.landmarks, observed),
         observed=observed,
         told=told,
         X_true=X,
@@ -69,19 +68,3 @@ def _hidden(X: np.ndarray, share: float) -> np.ndarray:
     """The landmarks farthest along x, as if something drove in front of the bow."""
     count = round(share * len(X))
     return np.argsort(-X[:, 0], kind="stable")[:count]
-
-
-def _views(landmarks: Sequence[str], observed: Observed) -> tuple[View, ...]:
-    views: list[View] = []
-    for k, stamp_ns in enumerate(observed.stamps_ns.tolist()):
-        seen = np.flatnonzero(observed.visible[k]).tolist()
-        views.append(
-            View(
-                frame=k,
-                stamp_ns=stamp_ns,
-                landmarks=tuple(landmarks[j] for j in seen),
-                pixels=observed.pixels[k, seen],
-                covariances=observed.covariances[k, seen],
-            )
-        )
-    return tuple(views)

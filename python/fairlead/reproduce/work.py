@@ -13,7 +13,7 @@ import numpy as np
 
 from fairlead.reproduce.detections import Detections
 from fairlead.reproduce.measured import Observed, in_order
-from fairlead.reproduce.methods import METHODS, TOLD, Flight, Track, solve
+from fairlead.reproduce.methods import METHODS, Flight, Track, solve
 from fairlead.reproduce.sequences import Sequence
 from fairlead.study.recorded import core_digest
 from fairlead.tracker import TrackerOptions
@@ -49,17 +49,10 @@ def flight_of(
 
 
 def job_of(sequence: Sequence, detections: Detections, observed: Observed, seed: int) -> Job:
-    """All methods on one seed."""
+    """All methods on one seed, ours told of the network's errors what a user's would be told."""
     flight = flight_of(sequence, detections.views, observed, seed)
-    return Job(flight=flight, name=f"{sequence.name}/{detections.network.name}/{seed:03d}")
-
-
-def told_job_of(sequence: Sequence, detections: Detections, observed: Observed, seed: int, stays_s: float) -> Job:
-    """Ours on one seed, told for how long the errors stay."""
-    flight = flight_of(sequence, detections.views, observed, seed)
-    name = f"{sequence.name}/{detections.network.name}/told-{seed:03d}"
-    options = dataclasses.replace(TrackerOptions(), correlation_time_s=stays_s)
-    return Job(flight=flight, name=name, methods=tuple(TOLD), options=options)
+    name = f"{sequence.name}/{detections.network.name}/{seed:03d}"
+    return Job(flight=flight, name=name, options=detections.options)
 
 
 def run_job(job: Job, folder: Path) -> dict[str, Track]:
@@ -82,7 +75,7 @@ def _load(path: Path, methods: Names[str]) -> dict[str, Track]:
         return {name: Track(**{field: arrays[f"{name}/{field}"] for field in _FIELDS}) for name in methods}
 
 
-_VERSION = 2
+_VERSION = 3
 """Of what the methods do here in Python; the core has its own hash."""
 
 

@@ -9,6 +9,7 @@ from fairlead.reproduce.context import Context
 from fairlead.reproduce.experiments.ablation import ablation
 from fairlead.reproduce.experiments.curves import curves
 from fairlead.reproduce.experiments.failures import failures
+from fairlead.reproduce.experiments.gap import gap
 from fairlead.reproduce.experiments.landmarks import landmarks
 from fairlead.reproduce.experiments.model import model
 from fairlead.reproduce.experiments.overlay import overlay
@@ -27,6 +28,7 @@ EXPERIMENTS: dict[str, Experiment] = {
     "angle": angle,
     "landmarks": landmarks,
     "poses": poses,
+    "gap": gap,
     "model": model,
     "times": times,
     "overlay": overlay,

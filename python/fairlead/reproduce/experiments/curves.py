@@ -10,12 +10,12 @@ from fairlead.reproduce.context import Context
 from fairlead.reproduce.detections import Network
 from fairlead.reproduce.experiments.shared import NO_SEQUENCES, run_facts
 from fairlead.reproduce.figures.curves import Curves, draw_curves
-from fairlead.reproduce.methods import BATCH, BOUND, EPNP, ONLINE, TOLD, TRUE, WINDOW
+from fairlead.reproduce.methods import BATCH, BOUND, EPNP, ONLINE, TRUE, WINDOW
 from fairlead.reproduce.scores import errors_of
 from fairlead.reproduce.sequences import Sequence
 
-_METHODS = (EPNP, WINDOW, TRUE, ONLINE, TOLD[ONLINE], BATCH)
-_WITH_MODEL = (WINDOW, ONLINE, TOLD[ONLINE], BATCH)
+_METHODS = (EPNP, WINDOW, TRUE, ONLINE, BATCH)
+_WITH_MODEL = (WINDOW, ONLINE, BATCH)
 
 
 def curves(context: Context) -> Section:

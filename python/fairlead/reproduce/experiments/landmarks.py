@@ -25,9 +25,11 @@ _COVARIANCE = (
     Column(key="inside_50", title="inside 50 % ellipse [%]", percent=True),
     Column(key="inside_90", title="90 % [%]", percent=True),
     Column(key="inside_99", title="99 % [%]", percent=True),
+    Column(key="nees", title="NEES / 2", digits=2),
     Column(key="factor", title="variance factor [-]"),
     Column(key="outliers", title="outliers [%]", percent=True, digits=2),
     Column(key="inefficiency", title="frames that say as much as one"),
+    Column(key="stays_s", title="errors stay [s]", digits=2),
 )
 
 
@@ -43,10 +45,10 @@ def landmarks(context: Context) -> Section:
             )
     note = "Error: distance from the exact projection. Hidden landmarks are behind something, inside the image."
     trust = (
-        "Shares inside the ellipses of the covariance that the network tells; right would be 50, 90, 99 %. The "
-        "variance factor is the mean square of the errors over the told covariance, outliers (beyond the 99.9 % "
-        "ellipse) left out. The last column is 1 for errors that are new in every frame, and the number of frames "
-        "for errors that stay."
+        "Shares inside the ellipses of the covariance that the network tells; right would be 50, 90, 99 %, and a NEES "
+        "of 1. The variance factor is the same with outliers (beyond the 99.9 % ellipse) left out. Frames that say as "
+        "much as one: 1 for errors that are new in every frame, the number of frames for errors that stay; the last "
+        "column is the time constant that would make it so."
     )
     return Section(
         name="landmarks",

@@ -15,12 +15,12 @@ from fairlead.reproduce.context import Context
 from fairlead.reproduce.detections import Network
 from fairlead.reproduce.experiments.shared import NO_SEQUENCES, run_facts
 from fairlead.reproduce.figures.overlay import FINER, Scene, draw_overlays
-from fairlead.reproduce.methods import EPNP, ONLINE, TOLD, WINDOW
+from fairlead.reproduce.methods import BATCH, EPNP, ONLINE, WINDOW
 from fairlead.reproduce.pictures import picture_of
 from fairlead.reproduce.sequences import Sequence
 from fairlead.types import Camera, Matrix4
 
-_METHODS = (EPNP, WINDOW, ONLINE, TOLD[ONLINE])
+_METHODS = (EPNP, WINDOW, ONLINE, BATCH)
 _WHERE = 0.85
 """Share of the flight after which the image is taken."""
 
@@ -72,7 +72,7 @@ def _scene(context: Context, sequence: Sequence, network: Network, mesh: Path) -
     distance = float(np.linalg.norm(T_true[:3, 3]))
     return Scene(
         title=f"{sequence.name}, {distance:.0f} m",
-        image=picture_of(sequence, sequence.frames[row]),
+        image=picture_of(sequence, sequence.truth[row].stamp_ns),
         truth=truth,
         methods=methods,
         inset=_inset(truth),

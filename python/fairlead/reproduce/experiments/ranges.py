@@ -15,7 +15,6 @@ from fairlead.reproduce.methods import ONLINE
 from fairlead.reproduce.scores import score, summarise
 from fairlead.reproduce.sequences import Sequence
 from fairlead.reproduce.work import Job, flight_of, run_job
-from fairlead.tracker import TrackerOptions
 from fairlead.types import RangeReading
 
 SIGMA_M = 0.5
@@ -41,8 +40,7 @@ def ranges(context: Context) -> Section:
             rows += [_row(context, sequence, network, ranged=ranged) for ranged in (False, True)]
     note = (
         f"The images are rendered; the range is the true one with a noise of {SIGMA_M:g} m (1 sigma), {RATE_HZ:g} "
-        "reading a second. Of the seven directions that images leave free a range holds one, the scale. As it comes: "
-        "not told that the network's errors stay."
+        "reading a second. Of the seven directions that images leave free a range holds one, the scale."
     )
     return Section(
         name="ranges",
@@ -63,7 +61,7 @@ def _row(context: Context, sequence: Sequence, network: Network, *, ranged: bool
         readings = _readings(sequence, seed) if ranged else ()
         flight = flight_of(sequence, found.views, context.observed(sequence, network), seed, readings)
         name = f"{sequence.name}/{network.name}/{'range' if ranged else 'alone'}-{seed:03d}"
-        options = dataclasses.replace(TrackerOptions(), range_to_origin=ranged)
+        options = dataclasses.replace(found.options, range_to_origin=ranged)
         track = run_job(Job(flight=flight, name=name, methods=(ONLINE,), options=options), context.cache / "runs")[
             ONLINE
         ]

@@ -9,9 +9,9 @@ from fairlead.reproduce.content import Cell, Column, Picture, Section, Table
 from fairlead.reproduce.context import Context, Seeds
 from fairlead.reproduce.experiments.shared import NO_SEQUENCES, run_facts
 from fairlead.reproduce.figures.dumbbells import draw_dumbbells
-from fairlead.reproduce.methods import BATCH, EPNP, ONLINE, TOLD, WINDOW
+from fairlead.reproduce.methods import BATCH, EPNP, ONLINE, WINDOW
 
-_METHODS = (EPNP, WINDOW, ONLINE, TOLD[ONLINE], BATCH)
+_METHODS = (EPNP, WINDOW, ONLINE, BATCH)
 
 
 def single_landmarks(context: Context) -> Section:
@@ -52,7 +52,6 @@ _TITLES = (
     "told model [m]",
     "published window [m]",
     "fairlead, online [m]",
-    "errors told to stay [m]",
     "fairlead, batch [m]",
 )
 
@@ -67,9 +66,9 @@ def _errors(seeds: Seeds, method: str) -> np.ndarray:
 
 
 def _drawn(panels: dict[str, dict[str, np.ndarray]]) -> dict[str, dict[str, np.ndarray]]:
-    """Without online, whose model ends as the batch's; beyond 2.5 times the largest told error at the edge."""
+    """Beyond 2.5 times the largest told error at the edge."""
     cut: dict[str, dict[str, np.ndarray]] = {}
     for name, errors in panels.items():
         limit = 2.5 * float(errors[EPNP].max())
-        cut[name] = {method: np.minimum(errors[method], limit) for method in (EPNP, WINDOW, BATCH, TOLD[ONLINE])}
+        cut[name] = {method: np.minimum(errors[method], limit) for method in _METHODS}
     return cut

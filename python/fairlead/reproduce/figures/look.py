@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fairlead.evaluate.figures.style import COLOURS, INK, OTHERS
-from fairlead.reproduce.methods import BATCH, BOUND, EPNP, LABELS, ONLINE, TOLD, TRUE, WINDOW
+from fairlead.reproduce.methods import BATCH, BOUND, EPNP, LABELS, ONLINE, TRUE, WINDOW
 
 TRUTH = "#f2d21f"
 """Of truth laid over an image, as in the publication."""
@@ -29,7 +29,6 @@ LOOKS = {
     WINDOW: Look(colour=COLOURS["window"]),
     ONLINE: Look(colour=COLOURS["map"], width=1.7),
     BATCH: Look(colour=COLOURS["refine"], width=1.7),
-    TOLD[ONLINE]: Look(colour=COLOURS["map"], dashes=(0, (3, 1.5)), width=1.3),
     TRUE: Look(colour=INK, dashes=(0, (1, 1.5)), width=1.1),
     BOUND: Look(colour=COLOURS["bound"], dashes=(0, (4, 2)), width=1.2),
 }

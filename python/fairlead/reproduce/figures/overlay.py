@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from fairlead.evaluate.figures.style import WIDTH_INCHES, styled
 from fairlead.reproduce.figures.look import LOOKS, TRUTH
-from fairlead.reproduce.methods import LABELS, TOLD
+from fairlead.reproduce.methods import LABELS
 
 FINER = 4
 
@@ -42,16 +42,11 @@ def draw_overlays(scenes: Sequence[Scene]) -> bytes:
     panels = figure.subplots(len(scenes), len(columns), squeeze=False)
     for row, (line, scene) in enumerate(zip(panels, scenes, strict=True)):
         for axes, method in zip(line, columns, strict=True):
-            _panel(axes, scene, method, title=_title(method) if row == 0 else "")
+            _panel(axes, scene, method, title=LABELS[method] if row == 0 else "")
         line[0].set_ylabel(scene.title, fontsize=8.5, fontweight="bold")
     buffer = io.BytesIO()
     figure.savefig(buffer, format="jpg", dpi=200, facecolor="white", pil_kwargs={"quality": 88})
     return buffer.getvalue()
-
-
-def _title(method: str) -> str:
-    """What differs, where the whole label is too long for a panel."""
-    return "errors told to stay" if method in TOLD.values() else LABELS[method]
 
 
 def _panel(axes: Axes, scene: Scene, method: str, title: str) -> None:
