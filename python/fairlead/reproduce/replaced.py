@@ -65,6 +65,11 @@ def _staying(w: np.ndarray, seen: Observed, measured: Measured, rng: np.random.G
     return v
 
 
+def _signed(w: np.ndarray, _: Observed, __: Measured, rng: np.random.Generator) -> np.ndarray:
+    """One sign a coordinate of a landmark, for all frames: only what the landmarks have in common is gone."""
+    return w * rng.choice([-1.0, 1.0], size=w.shape[1:])
+
+
 def _centred(w: np.ndarray, _: Observed, __: Measured, ___: np.random.Generator) -> np.ndarray:
     """Without what is constant over the flight, landmark by landmark."""
     count = np.isfinite(w).sum(axis=0)
@@ -79,14 +84,15 @@ def _real(w: np.ndarray, _: Observed, __: Measured, ___: np.random.Generator) ->
     return w
 
 
-WHITE, STAYING, CENTRED, INLYING, REAL = "white", "staying", "centred", "inlying", "real"
+WHITE, STAYING, SIGNED, CENTRED, INLYING, REAL = "white", "staying", "signed", "centred", "inlying", "real"
 KINDS = (
-    Errors(name=WHITE, label="drawn: independent, as large as measured", make=_white, told=False),
-    Errors(name="white-told", label="the same, but told that they stay", make=_white, told=True),
-    Errors(name="dealt", label="the network's, dealt anew over frames and landmarks", make=_dealt, told=False),
-    Errors(name=STAYING, label="drawn: staying as long as measured", make=_staying, told=True),
-    Errors(name=CENTRED, label="the network's, less each landmark's mean over the flight", make=_centred, told=True),
-    Errors(name=INLYING, label="the network's, outliers left out", make=_inlying, told=True),
-    Errors(name=REAL, label="the network's", make=_real, told=True),
+    Errors(name=WHITE, label="drawn, independent", make=_white, told=False),
+    Errors(name="white-told", label="drawn, independent, told to stay", make=_white, told=True),
+    Errors(name="dealt", label="network's, dealt anew", make=_dealt, told=False),
+    Errors(name=STAYING, label="drawn, staying", make=_staying, told=True),
+    Errors(name=SIGNED, label="network's, a random sign a landmark", make=_signed, told=True),
+    Errors(name=CENTRED, label="network's, less their mean", make=_centred, told=True),
+    Errors(name=INLYING, label="network's, without outliers", make=_inlying, told=True),
+    Errors(name=REAL, label="network's", make=_real, told=True),
 )
 """From what the bound takes for granted to what there is."""

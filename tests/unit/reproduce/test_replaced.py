@@ -83,6 +83,16 @@ def test_staying_errors_stay_as_long(noisy):
     assert found.outliers < 0.003
 
 
+def test_random_signs_keep_sizes_and_series(noisy):
+    flight, found = made(noisy, "signed")
+    before, after = noisy[0].observed.errors, flight.observed.errors
+    np.testing.assert_allclose(np.abs(after), np.abs(before), rtol=1e-9)
+    flipped = np.delete(after / before, 3, axis=1)
+    np.testing.assert_allclose(flipped, np.broadcast_to(flipped[:1], flipped.shape), rtol=1e-6)
+    assert 0.2 < (flipped[0] < 0.0).mean() < 0.8
+    assert found.stays_s == pytest.approx(noisy[1].stays_s)
+
+
 def test_centred_errors_have_no_mean_and_inlying_ones_no_outliers(noisy):
     centred, _ = made(noisy, "centred")
     assert np.abs(np.nanmean(np.delete(centred.observed.errors, 3, axis=1), axis=0)).max() < 1e-9

@@ -74,7 +74,8 @@ _WORDS = (
     "The same views, landmarks and told covariances with other errors (docs/reproduce.md section 7). The bound takes "
     "errors for Gaussian, independent and as large as measured: with such errors ours must reach it. What is lost "
     "with Gaussian errors that stay as long as the network's is lost to their staying; what is lost beyond that, to "
-    "what else the network's errors are: constant over a whole flight, alike in neighbouring landmarks, wild."
+    "what else the network's errors are: alike in many landmarks (gone with random signs), constant over a whole "
+    "flight (gone without their mean, and with it some of what is slow), wild (gone without outliers)."
 )
 _NOTE = (
     "Geometric means over the sequences; single ones in gap_sequences.csv. Bound: with the measured covariance, errors "
@@ -97,7 +98,7 @@ def gap_rows(context: Context, sequence: Sequence, network: Network) -> list[dic
                 head: dict[str, Cell] = {"sequence": sequence.name, "network": network.label, "method": method}
                 rows.append(head | {"errors": kind.name, "label": kind.label} | _cells(mine, flights, bounds, method))
                 if kind.name == REAL:
-                    late = {"errors": LATE, "label": "the same, once the first frames have passed"}
+                    late = {"errors": LATE, "label": f"network's, after the first {100 * SKIPPED:.0f} %"}
                     rows.append(head | late | _cells(mine, flights, bounds, method, skipped=SKIPPED))
     return rows
 

@@ -13,7 +13,7 @@ from fairlead.reproduce.detections import Network
 from fairlead.reproduce.experiments.gap import gap_rows
 from fairlead.reproduce.measured import Measured
 from fairlead.reproduce.methods import EPNP, LABELS, ONLINE, OURS, WINDOW
-from fairlead.reproduce.replaced import CENTRED, INLYING, STAYING, WHITE
+from fairlead.reproduce.replaced import CENTRED, INLYING, SIGNED, STAYING, WHITE
 from fairlead.reproduce.scores import Paired, on_common_frames, over_bound, paired
 from fairlead.reproduce.sequences import Sequence
 
@@ -131,6 +131,7 @@ def _against(seeds: Seeds, method: str, other: str) -> dict[str, Cell]:
 _REPLACED = (
     (WHITE, "with errors new in every frame"),
     (STAYING, "with Gaussian ones that stay as long"),
+    (SIGNED, "with random signs"),
     (CENTRED, "without their mean over the flight"),
     (INLYING, "without outliers"),
 )

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, FuncFormatter
 
 from fairlead.evaluate.figures.style import INK, MUTED, WIDTH_INCHES, styled
 from fairlead.reproduce.content import Row
@@ -38,7 +39,6 @@ def draw_gap(rows: Sequence[Row]) -> Figure:
         _frame(axes, sequence)
     panels[0].set_yticks(place, list(kinds.values()))
     panels[0].set_ylim(-0.6, len(kinds) - 0.4)
-    figure.supxlabel("root mean square / bound", fontsize=9)
     _legend(figure)
     return figure
 
@@ -47,7 +47,10 @@ def _frame(axes: Axes, title: str) -> None:
     axes.axvline(1.0, color=INK, lw=0.8)
     axes.axvline(TARGET, color=MUTED, lw=0.8, ls=(0, (3, 2)))
     axes.set_title(title)
+    axes.set_xlabel("rms / bound")
     log_values(axes, "x")
+    axes.xaxis.set_minor_locator(FixedLocator([1.5, 2.0, 3.0, 5.0]))
+    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.tick_params(axis="y", length=0)
 
 
