@@ -10,9 +10,9 @@ from fairlead.render.weather import Kind
 
 CLEAR = "clear"
 KINDS: tuple[Kind, ...] = ("fog", "rain", "snow", "glare", "night")
-STRENGTHS = (0.2, 0.4, 0.6, 0.8)
-FLIGHT, STRIDE = "rendezvous-20", 40
-"""A picture every 1.6 s."""
+STRENGTHS = (0.2, 0.4, 0.7)
+FLIGHT, STRIDE = "rendezvous-20", 60
+"""A picture every 2.4 s."""
 
 
 def names() -> dict[str, tuple[Kind | None, float]]:

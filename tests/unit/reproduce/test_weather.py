@@ -41,10 +41,10 @@ def test_every_kind_and_strength_is_rendered_once(rendered, tmp_path):
 
 def test_what_was_cut_short_is_made_again(rendered, tmp_path):
     skies.render_skies(tmp_path, silent)
-    shutil.rmtree(tmp_path / "rain-0.6")
+    shutil.rmtree(tmp_path / "rain-0.7")
     rendered.clear()
     skies.render_skies(tmp_path, silent)
-    assert rendered == [("rain-0.6", "rain", 0.6)]
+    assert rendered == [("rain-0.7", "rain", 0.7)]
 
 
 def test_nothing_is_rendered_into_somebody_elses_folder(rendered, tmp_path):

@@ -127,7 +127,7 @@ def _section(context: Context, rows: Rows[Mapping[str, Cell]], missing: Rows[str
 
 
 _WORDS = (
-    "The same flight under every weather, 25 pictures of the fast renderer (docs/reproduce.md section 10): light, "
+    "The same flight under every weather, 17 pictures of the fast renderer (docs/reproduce.md section 10): light, "
     "flight and sea are the same, nothing but the weather differs. The fast renderer is what most training pictures "
     "came from; on full renders a network errs a little more (data/frigate/heat-t.md)."
 )

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from fairlead.evaluate.figures.style import GRID, MUTED, WIDTH_INCHES, styled
 from fairlead.reproduce.figures.look import LOOKS
-from fairlead.reproduce.methods import EPNP, LABELS
+from fairlead.reproduce.methods import BATCH, EPNP, LABELS
 
 
 @styled
@@ -25,7 +25,9 @@ def draw_dumbbells(names: Sequence[str], panels: Mapping[str, Mapping[str, np.nd
         for method, values in errors.items():
             hollow = method == EPNP
             colour = LOOKS[method].colour
-            axes.scatter(values, y, s=17, facecolors="none" if hollow else colour, edgecolors=colour, lw=1.1, zorder=2)
+            axes.scatter(
+                values, y, s=_area(method), facecolors="none" if hollow else colour, edgecolors=colour, lw=1.1, zorder=2
+            )
         axes.set_title(title)
         axes.set_xlabel("error [m]")
         axes.set_xlim(0.0, None)
@@ -36,6 +38,11 @@ def draw_dumbbells(names: Sequence[str], panels: Mapping[str, Mapping[str, np.nd
     return figure
 
 
+def _area(method: str) -> float:
+    """Small where it would hide the other of ours."""
+    return 6.0 if method == BATCH else 19.0
+
+
 def _legend(figure: Figure, methods: Sequence[str]) -> None:
     """Dots as they are drawn."""
     handles: list[Line2D] = []
@@ -43,5 +50,5 @@ def _legend(figure: Figure, methods: Sequence[str]) -> None:
         colour, told = LOOKS[method].colour, method == EPNP
         face = "none" if told else colour
         label = "told model" if told else LABELS[method]
-        handles.append(Line2D([], [], ls="", marker="o", ms=4.2, mec=colour, mfc=face, label=label))
+        handles.append(Line2D([], [], ls="", marker="o", ms=_area(method) ** 0.5, mec=colour, mfc=face, label=label))
     figure.legend(handles=handles, loc="outside upper left", ncols=len(handles), columnspacing=1.4)

@@ -8,13 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, FuncFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from fairlead.evaluate.figures.style import INK, MUTED, WIDTH_INCHES, styled
 from fairlead.reproduce.content import Row
 from fairlead.reproduce.figures.look import LOOKS
 from fairlead.reproduce.methods import BATCH, LABELS, ONLINE
-from fairlead.study.figures.look import log_values
 
 TARGET = 1.3
 _MARKERS = (("rotation", "o"), ("translation", "s"), ("model", "D"))
@@ -48,9 +47,10 @@ def _frame(axes: Axes, title: str) -> None:
     axes.axvline(TARGET, color=MUTED, lw=0.8, ls=(0, (3, 2)))
     axes.set_title(title)
     axes.set_xlabel("rms / bound")
-    log_values(axes, "x")
-    axes.xaxis.set_minor_locator(FixedLocator([1.5, 2.0, 3.0, 5.0]))
-    axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(FixedLocator([0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0]))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_locator(NullLocator())
     axes.tick_params(axis="y", length=0)
 
 

@@ -5,7 +5,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -81,13 +81,12 @@ def by_method(lines: Sequence[Line], settings: Sequence[Setting]) -> dict[str, l
     return {method: each for method, each in found.items() if len(each) == len(settings)}
 
 
-def log_values(axes: Axes, which: Literal["x", "y"] = "y") -> None:
-    """A logarithmic axis with numbers at 1, 2 and 5 of every decade."""
-    (axes.set_xscale if which == "x" else axes.set_yscale)("log")
-    axis = axes.xaxis if which == "x" else axes.yaxis
-    plain_decades(axis)
-    axis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "25" else ""))
-    axes.tick_params(axis=which, which="minor", labelsize=7, labelcolor=MUTED)
+def log_values(axes: Axes) -> None:
+    """A logarithmic y axis with numbers at 1, 2 and 5 of every decade."""
+    axes.set_yscale("log")
+    plain_decades(axes.yaxis)
+    axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}" if f"{value:.0e}"[0] in "25" else ""))
+    axes.tick_params(axis="y", which="minor", labelsize=7, labelcolor=MUTED)
 
 
 def legend(figure: Figure, shown: Sequence[str], title: str, ncols: int = 4) -> None:
