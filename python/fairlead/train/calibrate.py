@@ -17,7 +17,7 @@ from fairlead.io.network_card import Calibration
 from fairlead.progress import ProgressFactory, silent
 from fairlead.train.accuracy import draw_reliability, lines, markdown
 from fairlead.train.calibration import fit
-from fairlead.train.course import load_lesson
+from fairlead.train.checkpoint import load_lesson
 from fairlead.train.findings import joined, look
 from fairlead.train.pictures import open_pictures
 
