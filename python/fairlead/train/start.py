@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""To begin where another network ended: from a checkpoint, or from a network that was exported. docs/networks.md.
+"""To begin where another network ended: a checkpoint, or a network that was exported. docs/networks.md section 4.
 
 An exported network has no batch norms any more: they are folded into the convolutions before them,
 
