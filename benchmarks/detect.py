@@ -5,7 +5,8 @@
     python -m benchmarks.detect NETWORK sequence FOLDER ... [--every 1]
     python -m benchmarks.detect NETWORK crops FOLDER [--count 300]
 
-FOLDER is what `fairlead render` wrote: a sequence or a clip, or crops, those without the target being what must not be found.
+FOLDER is what `fairlead render` wrote: a sequence or a clip, or crops, those without the target being what must not be
+found.
 Every image of a sequence is followed from the one before it; each crop is searched as a whole image of its own.
 """
 
