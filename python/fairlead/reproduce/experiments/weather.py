@@ -35,9 +35,9 @@ _COLUMNS = (
     Column(key="epnp_m", title="EPnP: translation [m]"),
     Column(key="map_m", title="online: translation [m]"),
     Column(key="map_failed", title="online: failed [%]", percent=True, digits=2),
-    Column(key="map_nees", title="online: NEES / 6", digits=2),
+    Column(key="map_nees_median", title="online: NEES / 6, median", digits=2),
     Column(key="calibrated_m", title="calibrated: translation [m]"),
-    Column(key="calibrated_nees", title="calibrated: NEES / 6", digits=2),
+    Column(key="calibrated_nees_median", title="calibrated: NEES / 6, median", digits=2),
 )
 
 
@@ -74,6 +74,7 @@ def _row(context: Context, scene: Sequence, network: Network) -> dict[str, Cell]
         numbers = summarise(each)
         row |= {f"{name}_m": numbers["translation_all_m"], f"{name}_deg": numbers["rotation_all_deg"]}
         row |= {f"{name}_failed": numbers["failed"], f"{name}_nees": numbers["pose_nees"]}
+        row |= {f"{name}_nees_median": numbers["pose_nees_median"]}
         row |= {f"{name}_sigma_m": numbers["sigma_translation_m"]}
     return row
 
@@ -106,11 +107,13 @@ def _section(context: Context, rows: Rows[Mapping[str, Cell]], missing: Rows[str
     note = (
         "Translation counts failed frames with their limits. NEES: 1 is a true covariance, outliers are inside; that "
         "of the landmarks is the network's alone. The variance factor is the calibration that the network's "
-        "covariance would need in this condition, outliers left out; 'calibrated' is online told that."
+        "covariance would need in this condition, outliers left out; 'calibrated' is online told that. It changes "
+        "little, because ours finds a common factor by itself. Pictures are 2.4 s apart: where the network loses the "
+        "ship, it has to be found again, and one picture in which something else is taken for it costs a whole mean."
     )
     caption = (
-        "Mean error of visible landmarks, translation error of fairlead online, and its NEES per degree of freedom (1 "
-        "is a true covariance), against strength; 0 is clear."
+        "Median error of visible landmarks; translation error of fairlead online, failed frames with their limits; "
+        "their share; and its NEES per degree of freedom, median (1 is a true covariance). 0 is clear."
     )
     table = Table(name="weather", title="Against the strength of the weather", columns=_COLUMNS, rows=rows, note=note)
     pictures = [Picture(name="weather", caption=caption, figure=draw_weather(rows))] if rows else []
