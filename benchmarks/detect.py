@@ -5,7 +5,8 @@
     python -m benchmarks.detect NETWORK sequence FOLDER ... [--every 1]
     python -m benchmarks.detect NETWORK crops FOLDER [--count 300]
 
-FOLDER is what `fairlead render` wrote: a sequence, or crops, those without the target being what must not be found.
+FOLDER is what `fairlead render` wrote: a sequence or a clip, or crops, those without the target being what must not be
+found.
 Every image of a sequence is followed from the one before it; each crop is searched as a whole image of its own.
 """
 
@@ -24,6 +25,7 @@ from fairlead.io.observations import read_views
 from fairlead.io.target import load_target
 from fairlead.opencv import read_image
 from fairlead.sources.bop import BopSource
+from fairlead.sources.video import VideoSource
 from fairlead.tracker import Tracker
 from fairlead.types import Camera, View
 
@@ -76,7 +78,8 @@ def sequence(network: Path, folder: Path, every: int) -> None:
     stages = {name: Stopwatch(detector.network, name) for name in ("blob", "run", "look")}
     found: list[Errors] = []
     total, empty = [], 0
-    for number, image in enumerate(BopSource(folder, camera)):
+    clip = folder / "clip.mkv"
+    for number, image in enumerate(VideoSource(clip, camera) if clip.is_file() else BopSource(folder, camera)):
         if number % every:
             continue
         start = time.thread_time()

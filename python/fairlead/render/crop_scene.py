@@ -8,7 +8,7 @@ import numpy as np
 
 from fairlead import geometry
 from fairlead.render.crop_clutter import Clutter
-from fairlead.render.distractors import container_ship, island, small_craft
+from fairlead.render.distractors import island, other_ship
 from fairlead.render.ocean import WaveField, Waves
 from fairlead.render.raster.model import Model
 from fairlead.render.raster.renderer import Renderer
@@ -20,6 +20,8 @@ from fairlead.render.surroundings import Kind, Surroundings, at_sea, in_space
 from fairlead.render.variations import Warp, repainted
 from fairlead.types import Matrix3, Matrix4, Points3, Target
 
+SHIPS = 6
+"""Other ships of a block."""
 SKIES = ((0.0, 0.55), (0.35, 0.25), (1.0, 0.20))
 """Overcast and how often: clear, hazy, grey."""
 
@@ -49,16 +51,15 @@ class Stage:
         self._T_level_target = np.eye(4)
         self._waves: Waves | None = None
         self.painted = surface
+        self._ships: list[Model] = []
         rng = np.random.default_rng(5)
-        others = [container_ship(rng), container_ship(rng), small_craft(rng), small_craft(rng), small_craft(rng)]
-        self._ships = [renderer.add(pack(other)) for other in others] if kind == "sea" else []
         self._level = np.eye(4)
         self._level[:3, :3] = R_level_target
         self._room = Clutter(renderer, target, R_level_target, rng) if kind == "room" else None
         self._islands = [renderer.add(pack(island(rng))) for _ in range(2)] if kind == "sea" else []
 
     def set(self, rng: np.random.Generator) -> CropScene:
-        """A new shape, sky and sea."""
+        """A new shape, sky and sea, and other ships."""
         warp = Warp(self._surface, rng)
         surface = self._surface.with_vertices(warp(self._surface.vertices))
         azimuth = float(rng.uniform(0.0, 2.0 * np.pi))
@@ -69,6 +70,7 @@ class Stage:
             surroundings = in_a_room(rng)
         else:
             surroundings = self._sea(surface, azimuth, rng)
+            self._meet_others(rng)
         self._renderer.set_surroundings(surroundings)
         self._T_level_target = geometry.exp_se3(np.array([0.0, 0.0, 0.5, 0.03, 0.008, 0.0]) * rng.standard_normal(6))
         self._vertices[:, :3] = surface.vertices[surface.faces].reshape(-1, 3)
@@ -94,6 +96,11 @@ class Stage:
         self._waves = waves.at(float(rng.uniform(0.0, 100.0)))
         self._renderer.set_waves(self._waves)
         return surroundings
+
+    def _meet_others(self, rng: np.random.Generator) -> None:
+        for ship in self._ships:
+            ship.release()
+        self._ships = [self._renderer.add(pack(other_ship(rng))) for _ in range(SHIPS)]
 
     def paint(self, rng: np.random.Generator) -> None:
         """Other colours on the same shape."""
@@ -130,9 +137,8 @@ class Stage:
                     found.append((models[int(rng.integers(len(models)))], T))
         return found
 
-    def stand_in(self, T_world_target: Matrix4, rng: np.random.Generator) -> list[tuple[Model, Matrix4]]:
-        """Another ship where the target would be, two times in three."""
-        if not self._ships or rng.random() < 1.0 / 3.0:
-            return []
-        T = T_world_target @ geometry.exp_se3(np.array([0.0, 0.0, 0.0, 0.0, 0.0, rng.uniform(0.0, 2.0 * np.pi)]))
-        return [(self._ships[int(rng.integers(len(self._ships)))], T)]
+    def stand_in(self, rng: np.random.Generator) -> Model | None:
+        """Another ship for the target's place, three times in four."""
+        if not self._ships or rng.random() < 0.25:
+            return None
+        return self._ships[int(rng.integers(len(self._ships)))]

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from fairlead import geometry
 from fairlead.io.coco import LabelledImage, label_json, write_coco
 from fairlead.opencv.filters import resized, write_image
 from fairlead.progress import ProgressFactory, silent
@@ -207,17 +208,33 @@ class CropMaker:
         )
 
     def _without_target(self, number: int, shot: Shot) -> Shot:
-        """The same shot, or, in a share of the crops, with the target behind the camera, and often another ship."""
+        """The same shot, or, in a share of the crops, with the target behind the camera and often another ship.
+
+        Of these every other is seen from where it looks as large as the target would: so a detector frames it. Seven of
+        ten have the wake.
+        """
         rng = np.random.default_rng([self._job.seed, number, 4])
         if rng.random() >= self._job.empty_share:
             return shot
-        stand_in = self._stage.stand_in(shot.T_world_target, rng)
-        away = behind_camera(shot.T_camera_target, shot.T_world_target)
+        T_camera_place, T_world_place, others = shot.T_camera_target, shot.T_world_target, list(shot.others)
+        away = behind_camera(T_camera_place, T_world_place)
+        wake = T_world_place @ away
+        other = self._stage.stand_in(rng)
+        if other is not None:
+            if rng.random() < 0.5:
+                model = self._stage.model
+                T_camera_place = T_camera_place.copy()
+                T_camera_place[:3, 3] *= (other.high[0] - other.low[0]) / (model.high[0] - model.low[0])
+                away = behind_camera(T_camera_place, T_world_place)
+            turn = geometry.exp_se3(np.array([0.0, 0.0, 0.0, 0.0, 0.0, rng.uniform(0.0, 2.0 * np.pi)]))
+            others.append((other, T_world_place @ turn))
+            wake = T_world_place @ turn if rng.random() < 0.7 else T_world_place @ away
         return replace(
             shot,
-            T_camera_target=shot.T_camera_target @ away,
-            T_world_target=shot.T_world_target @ away,
-            others=[*shot.others, *stand_in],
+            T_camera_target=T_camera_place @ away,
+            T_world_target=T_world_place @ away,
+            others=others,
+            T_world_wake=wake,
         )
 
     def _photograph(

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from fairlead.io.bop import is_bop
 from fairlead.io.documents import read_toml
 from fairlead.io.errors import InputError
 from fairlead.io.fields import Fields
@@ -17,9 +16,9 @@ from fairlead.io.network_card import Calibration
 from fairlead.progress import ProgressFactory, silent
 from fairlead.train.accuracy import draw_reliability, lines, markdown
 from fairlead.train.calibration import fit
-from fairlead.train.course import load_lesson
+from fairlead.train.checkpoint import load_lesson
 from fairlead.train.findings import joined, look
-from fairlead.train.pictures import open_pictures
+from fairlead.train.pictures import is_sequence, open_pictures
 
 CALIBRATION = "calibration.toml"
 HALF = 64
@@ -49,7 +48,7 @@ def calibrate_network(
             for k, (_, pictures) in enumerate(opened)
         ])  # fmt: skip
     crops = np.array(
-        [count >= 2 * HALF and not is_bop(folder) for folder, (count, _) in zip(folders, opened, strict=True)]
+        [count >= 2 * HALF and not is_sequence(folder) for folder, (count, _) in zip(folders, opened, strict=True)]
     )
     fitted = crops[findings.condition] & ((findings.picture // HALF) % 2 == 0)
     if not (findings.visibility[fitted] == 2).any() or not (findings.visibility[~fitted] == 2).any():

@@ -24,7 +24,7 @@ class TrainConfig:
     network: Network = "heat-t"
     """heat: the default. rtmpose: as published, best begun with --start from a trained heat. tinypose: smallest."""
     start: Path | None = None
-    """Checkpoint to begin from: weights of the same name and shape are taken over."""
+    """Checkpoint or exported .onnx to begin from: weights of the same name and shape are taken over."""
     valid: tuple[Path, ...] = ()
     """Folders of held-out crops; the last twentieth of the data if not given."""
     crops: int = 100_000

@@ -16,16 +16,19 @@ from lightning.pytorch.callbacks import Callback, EMAWeightAveraging, ModelCheck
 from lightning.pytorch.loggers import CSVLogger
 from torch.utils.data import DataLoader, Sampler
 
-from fairlead.io.errors import InputError
 from fairlead.progress import Progress, ProgressFactory, silent
+from fairlead.train.checkpoint import load_lesson
 from fairlead.train.crops import Crops, collate
 from fairlead.train.curves import draw_curves
 from fairlead.train.lesson import Lesson, Settling
+from fairlead.train.start import warm_start
 
 EPOCH = 4096
 """Crops between two checkpoints, drawn anew from all that there are."""
 VALIDATED = 256
 """Held-out crops that are looked at after an epoch; all of them by `fairlead calibrate`."""
+MEASURED = 64
+"""Crops that the batch norms of an exported network are measured on."""
 STAGES = ((0.45, 2), (0.7, 3))
 """Until which share of the course crops are shown at so many quarters of their side: cheaper by the square."""
 AVERAGED = 0.05
@@ -67,10 +70,11 @@ class Course:
         return self.epochs * self.epoch // self.batch
 
     def size_at(self, epoch: int) -> int:
-        """Side of the crops [px]. RTMPose's head takes crops of one size alone."""
+        """Side of the crops [px]. RTMPose takes one size; who starts from a trained network leaves out the smallest."""
         if self.network.startswith("rtmpose"):
             return self.size
-        quarters = (quarters for share, quarters in STAGES if epoch < share * self.epochs)
+        stages = STAGES if self.start is None else STAGES[1:]
+        quarters = (quarters for share, quarters in stages if epoch < share * self.epochs)
         return self.size // 4 * next(quarters, 4)
 
 
@@ -140,7 +144,8 @@ def follow(course: Course, learned: Crops, held_out: Crops, *, progress: Progres
     lesson = Lesson(course.network, learned.landmarks, course.steps, rate=course.rate, size=course.size)
     lines: list[str] = []
     if course.start is not None and not last.exists():
-        taken, of = warm_start(lesson, course.start)
+        first = collate([learned[k % len(learned)] for k in range(MEASURED)])
+        taken, of = warm_start(lesson, course.start, first.images)
         lines.append(f"{course.start}: {taken} of {of} arrays taken over")
     with progress("crops", lambda: course.epochs * course.epoch) as advance, _quiet(course.seed):
         trainer = _trainer(course, Told(course, advance), len(held_out))
@@ -221,37 +226,3 @@ def _quiet(seed: int) -> Generator[None]:
     finally:
         for name, level in zip(names, levels, strict=True):
             logging.getLogger(name).setLevel(level)
-
-
-def read_checkpoint(path: Path) -> dict[str, Any]:
-    """What train has written: weights and what network they belong to; nothing in it is executed. Raises InputError."""
-    try:
-        found = torch.load(path, map_location="cpu", weights_only=True)
-        if not isinstance(found, dict) or not {"state_dict", "hyper_parameters"} <= found.keys():
-            raise InputError(path, "expected a checkpoint of `fairlead train`")
-        return found
-    except InputError:
-        raise
-    except Exception as error:  # a damaged archive fails in many ways
-        raise InputError(path, f"expected a checkpoint of `fairlead train`, got {type(error).__name__}") from error
-
-
-def load_lesson(path: Path) -> Lesson:
-    """The network of a checkpoint, for use: averaged weights, nothing is learned. Raises InputError."""
-    found = read_checkpoint(path)
-    try:
-        lesson = Lesson(**found["hyper_parameters"])
-        lesson.load_state_dict(found["state_dict"])
-    except (TypeError, RuntimeError, ValueError, KeyError) as error:
-        raise InputError(path, f"expected a checkpoint of `fairlead train`: {error}") from error
-    return lesson.eval()
-
-
-def warm_start(lesson: Lesson, checkpoint: Path) -> tuple[int, int]:
-    """Take over every weight whose name and shape fit; returns how many of how many. Raises InputError."""
-    found, own = read_checkpoint(checkpoint)["state_dict"], lesson.state_dict()
-    fitting = {name: value for name, value in found.items() if name in own and own[name].shape == value.shape}
-    if not fitting:
-        raise InputError(checkpoint, "no weight in it fits this network")
-    lesson.load_state_dict(fitting, strict=False)
-    return len(fitting), len(own)

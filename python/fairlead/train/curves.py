@@ -7,10 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
+LOSSES = ("loss", "map", "distance", "covariance", "visibility", "presence")
+SHARES = ("within_5_px", "visibility_right", "presence_right", "nees_median")
 PANELS = (
-    ("loss", ("train/loss", "train/map", "train/distance", "train/covariance", "train/visibility"), "linear"),
+    ("loss", tuple(f"train/{part}" for part in LOSSES), "linear"),
     ("held out, visible landmarks [px of the crop]", ("valid/mean_px", "valid/median_px"), "log"),
-    ("held out", ("valid/within_5_px", "valid/visibility_right", "valid/nees_median"), "linear"),
+    (
+        "held out",
+        ("valid/within_5_px", "valid/visibility_right", "valid/presence_right", "valid/nees_median"),
+        "linear",
+    ),
 )
 FILE = "curves.png"
 

@@ -12,7 +12,7 @@ from torch import Tensor, nn
 
 from fairlead.io.network_card import METADATA_KEY, Calibration, Decoding, NetworkCard, NetworkInput, card_json
 from fairlead.train.calibrate import read_calibration
-from fairlead.train.course import load_lesson
+from fairlead.train.checkpoint import load_lesson
 from fairlead.train.crops import MEAN, SCALE
 from fairlead.train.lesson import Lesson
 

@@ -17,6 +17,7 @@ from fairlead.train.losses import (
     gaussian_loss,
     landmark_weight,
     mean_of,
+    presence_loss,
     visibility_loss,
     whitened,
 )
@@ -27,6 +28,7 @@ from fairlead.train.networks.rtmpose import RtmPose
 DISTANCE_WEIGHT = 0.1
 COVARIANCE_WEIGHT = 0.2
 VISIBILITY_WEIGHT = 0.5
+PRESENCE_WEIGHT = 0.5
 
 
 def channels_last(network: Network) -> Network:
@@ -66,7 +68,7 @@ class Lesson(lightning.LightningModule):
         return self.network(normalise(images).contiguous(memory_format=torch.channels_last))
 
     def training_step(self, batch: Batch, index: int) -> Tensor:
-        """Sum of the four losses."""
+        """Sum of the five losses."""
         del index
         prediction = self(batch.images)
         weight = landmark_weight(batch)
@@ -75,6 +77,7 @@ class Lesson(lightning.LightningModule):
             "distance": DISTANCE_WEIGHT * mean_of(distance_loss(prediction, batch), weight),
             "covariance": COVARIANCE_WEIGHT * mean_of(covariance_loss(prediction, batch), weight),
             "visibility": VISIBILITY_WEIGHT * visibility_loss(prediction, batch).mean(),
+            "presence": PRESENCE_WEIGHT * presence_loss(prediction, batch).mean(),
         }
         loss = torch.stack(list(parts.values())).sum()
         self.log_dict({f"train/{name}": value.detach() for name, value in parts.items()}, on_step=False, on_epoch=True)
@@ -89,11 +92,13 @@ class Lesson(lightning.LightningModule):
         distance = (prediction.pixels - batch.pixels).norm(dim=-1)[seen]
         nees = 0.5 * whitened(prediction, batch).square().sum(-1)[seen]
         right = ((prediction.visible > 0.0) == seen).float().mean()
+        there = (batch.visibility > 0).any(dim=1)
         self.log("valid/median_px", distance.median(), prog_bar=True)
         self.log("valid/mean_px", distance.mean())
         self.log("valid/within_5_px", (distance < 5.0).float().mean())
         self.log("valid/nees_median", nees.median())
         self.log("valid/visibility_right", right)
+        self.log("valid/presence_right", ((prediction.present > 0.0) == there).float().mean())
 
     def configure_optimizers(self) -> Any:
         """AdamW without decay of biases and norms; the rate by the step."""

@@ -56,6 +56,12 @@ def visibility_loss(prediction: Prediction, batch: Batch) -> Tensor:
     return F.binary_cross_entropy_with_logits(prediction.visible, seen, reduction="none")
 
 
+def presence_loss(prediction: Prediction, batch: Batch) -> Tensor:
+    """(b,): cross entropy of the target being in the crop [nat]: of some landmark of it being there, seen or hidden."""
+    there = (batch.visibility > 0).any(dim=1).to(prediction.present.dtype)
+    return F.binary_cross_entropy_with_logits(prediction.present, there, reduction="none")
+
+
 def distance_loss(prediction: Prediction, batch: Batch) -> Tensor:
     """(b, n): Huber's loss of the error, 1 px at the corner [px]."""
     return F.smooth_l1_loss(prediction.pixels, batch.pixels, reduction="none", beta=1.0).sum(-1)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Held-out pictures to measure a network on: labelled crops, or windows of a rendered sequence. docs/networks.md."""
+"""Held-out pictures to measure a network on: labelled crops, or windows of a flight. docs/networks.md section 5."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,15 +9,19 @@ from pathlib import Path
 import numpy as np
 
 from fairlead import geometry
-from fairlead.io.bop import is_bop, read_bop
+from fairlead.io.bop import BopFrame, is_bop, read_bop
+from fairlead.io.camera import load_camera
 from fairlead.io.csv_lines import read_csv
 from fairlead.io.errors import InputError
+from fairlead.io.poses import read_truth
 from fairlead.io.target import load_target
 from fairlead.opencv import Image, read_image
 from fairlead.opencv.crops import cut_resized
 from fairlead.train.crops import read_folders
 from fairlead.types import Matrix4
+from fairlead.video import open_video, pictures
 
+CLIP = "clip.mkv"
 PAD = 1.25
 """Side of a window over that of the landmarks' box."""
 MISPLACED, MISSIZED = 0.04, 0.08
@@ -41,15 +45,14 @@ class Picture:
 
 def open_pictures(folder: Path, landmarks: tuple[str, ...], size: int, seed: int) -> tuple[int, Iterator[Picture]]:
     """How many, and the pictures of a folder of crops or of a sequence. Raises InputError where landmarks differ."""
-    if is_bop(folder):
-        frames = read_bop(folder)
-        return len(frames), _windows(folder, landmarks, size, seed)
-    names, pictures = read_folders([folder])
+    if is_sequence(folder):
+        return len(_truth(folder)), _windows(folder, landmarks, size, seed)
+    names, labelled = read_folders([folder])
     if names != landmarks:
         raise InputError(folder, f"expected labels of {', '.join(landmarks)}, which the network knows")
 
     def crops() -> Iterator[Picture]:
-        for each in pictures:
+        for each in labelled:
             image = read_image(each.path)
             if image.shape[:2] != (size, size):
                 raise InputError(each.path, f"expected {size} x {size} px, got {image.shape[1]} x {image.shape[0]}")
@@ -61,7 +64,32 @@ def open_pictures(folder: Path, landmarks: tuple[str, ...], size: int, seed: int
                 T_camera_target=each.label.T_camera_target,
             )
 
-    return len(pictures), crops()
+    return len(labelled), crops()
+
+
+def is_sequence(folder: Path) -> bool:
+    """Whether it holds a flight, as images or as a clip, and not crops."""
+    return is_bop(folder) or (folder / CLIP).is_file()
+
+
+def _truth(folder: Path) -> list[BopFrame]:
+    """Camera and pose of every frame of a flight."""
+    if is_bop(folder):
+        return read_bop(folder)
+    K = load_camera(folder / "camera.yaml").K
+    poses = read_truth(folder / "truth.csv")
+    return [BopFrame(frame=pose.frame, K=K, T_camera_target=pose.T_camera_target) for pose in poses]
+
+
+def _images(folder: Path) -> Iterator[tuple[int, Image]]:
+    """Every image of a flight with its number."""
+    if is_bop(folder):
+        for frame in read_bop(folder):
+            yield frame.frame, read_image(folder / "rgb" / f"{frame.frame:06d}.png")
+        return
+    with open_video(folder / CLIP) as container:
+        for number, picture in enumerate(pictures(container, named=str(folder / CLIP))):
+            yield number, picture.image
 
 
 def _windows(folder: Path, landmarks: tuple[str, ...], size: int, seed: int) -> Iterator[Picture]:
@@ -70,16 +98,16 @@ def _windows(folder: Path, landmarks: tuple[str, ...], size: int, seed: int) -> 
     if target.landmarks != landmarks:
         raise InputError(folder, f"expected the landmarks {', '.join(landmarks)}, which the network knows")
     table = _true_landmarks(folder / "landmarks_true.csv", landmarks)
-    for frame in read_bop(folder):
-        pixels, states = table[frame.frame]
-        if not (states > 0).any():
+    truth = {frame.frame: frame for frame in _truth(folder)}
+    for number, image in _images(folder):
+        if number not in truth or not (table[number][1] > 0).any():
             continue
-        rng = np.random.default_rng([seed, frame.frame])
+        frame, (pixels, states) = truth[number], table[number]
+        rng = np.random.default_rng([seed, number])
         low, high = pixels[states > 0].min(axis=0), pixels[states > 0].max(axis=0)
         side = max(16, round(PAD * float((high - low).max()) * float(np.exp(MISSIZED * rng.standard_normal()))))
         middle = 0.5 * (low + high) + MISPLACED * side * rng.standard_normal(2)
         corner = np.round(middle + 0.5 - 0.5 * side).astype(int)
-        image = read_image(folder / "rgb" / f"{frame.frame:06d}.png")
         moved = (pixels - corner + 0.5) * (size / side) - 0.5  # docs/rendering.md eq. (4); corner + 1/2 is a centre
         inside = np.all((moved > -0.5) & (moved < size - 0.5), axis=1)
         yield Picture(

@@ -7,18 +7,23 @@ import shutil
 from pathlib import Path
 
 import numpy as np
+import onnx
 import onnxruntime
 import pytest
 import torch
 
 from fairlead.cli import main
 from fairlead.detect.onnx import Network
-from fairlead.train import course as courses
-from fairlead.train.course import Course, load_lesson, read_checkpoint
+from fairlead.train.checkpoint import load_lesson, read_checkpoint
+from fairlead.train.course import Course
 from fairlead.train.crops import normalise, open_crops
 from fairlead.train.curves import read_curves
+from fairlead.train.export import export_network, write_onnx
 from fairlead.train.lesson import Lesson, share_of_rate
+from fairlead.train.start import warm_start
 from tests.unit.train.conftest import NAMES, spotted
+
+SPOTS = torch.from_numpy(np.stack([spotted(np.random.default_rng(k))[0] for k in range(8)])).permute(0, 3, 1, 2)
 
 
 def test_a_network_learns_where_spots_are(trained: Path) -> None:
@@ -82,8 +87,6 @@ def test_torch_and_onnxruntime_say_the_same(name: str, trained: Path, spots: Pat
     """Two orders of summation: 0.001 px. heat is trained, or which cell is highest would be luck; the maps of an
     untrained tinypose are flat, and one Newton step divides by their curvature: 0.02 px.
     """
-    from fairlead.train.export import write_onnx
-
     torch.manual_seed(0)
     lesson = load_lesson(trained / "last.ckpt") if name == "heat-t" else Lesson(name, NAMES, 1, rate=1e-3, size=128)
     lesson.eval()
@@ -97,14 +100,42 @@ def test_torch_and_onnxruntime_say_the_same(name: str, trained: Path, spots: Pat
         assert np.abs(one - other.numpy()).max() < (0.02 if name == "tinypose" else 0.001)
 
 
-def test_weights_that_fit_are_taken_over(trained: Path, spots: Path, tmp_path: Path) -> None:
+def test_weights_that_fit_are_taken_over(trained: Path) -> None:
     """RTMPose begins from heat's backbone."""
     lesson = Lesson("rtmpose-t", NAMES, 1, rate=1e-3, size=128)
-    taken, of = courses.warm_start(lesson, trained / "last.ckpt")
+    taken, of = warm_start(lesson, trained / "last.ckpt", SPOTS)
     kept = read_checkpoint(trained / "last.ckpt")["state_dict"]
     backbone = [name for name in lesson.state_dict() if ".backbone." in name]
     assert len(backbone) <= taken < of
     assert all(torch.equal(lesson.state_dict()[name], kept[name]) for name in backbone)
+
+
+@pytest.mark.parametrize("name", ["heat-t", "rtmpose-t", "tinypose"])
+def test_an_exported_network_can_be_begun_from(
+    name: str, trained: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Batch norms, which the file has no more, come back so that the network says the same, and so that while learning
+    it says the same of the crops that they were measured on. Heat is trained; tinypose as in the test above.
+    """
+    torch.manual_seed(0)
+    lesson = load_lesson(trained / "settled.ckpt") if name == "heat-t" else Lesson(name, NAMES, 1, rate=1e-3, size=128)
+    for module in lesson.modules():
+        if isinstance(module, torch.nn.BatchNorm2d) and name != "heat-t":
+            module.running_var.uniform_(0.5, 2.0)
+            module.running_mean.normal_(0.0, 0.1)
+    monkeypatch.setattr("fairlead.train.export.load_lesson", lambda _: lesson.eval())
+    export_network(tmp_path / "any.ckpt", tmp_path / "network.onnx")
+    again = Lesson(name, NAMES, 1, rate=1e-3, size=128)
+    taken, of = warm_start(again, tmp_path / "network.onnx", SPOTS)
+    counters = sum(key.endswith("num_batches_tracked") for key in again.state_dict())
+    fixed = sum(key.endswith("blur.across") for key in again.state_dict())
+    assert of - counters - fixed <= taken <= of - counters
+    with torch.inference_mode():
+        wanted, found, learning = lesson.eval()(SPOTS), again.eval()(SPOTS), again.train()(SPOTS)
+    for each in (found, learning):
+        assert (each.pixels - wanted.pixels).abs().median() < 0.001
+        assert torch.allclose(each.cholesky, wanted.cholesky, atol=0.002)
+        assert torch.allclose(each.present, wanted.present, atol=0.002)
 
 
 def test_crops_are_drawn_anew_in_every_epoch(spots: Path) -> None:
@@ -121,6 +152,8 @@ def test_small_crops_come_first() -> None:
     sizes = [Course(network="heat-t", output=Path(), crops=40_960).size_at(epoch) for epoch in range(10)]
     assert sizes == [128] * 5 + [192] * 2 + [256] * 3
     assert Course(network="rtmpose-t", output=Path(), crops=40_960).size_at(0) == 256
+    begun = Course(network="heat-t", output=Path(), crops=40_960, start=Path("a.onnx"))
+    assert [begun.size_at(epoch) for epoch in range(10)] == [192] * 7 + [256] * 3
 
 
 def test_the_rate_rises_stays_and_falls() -> None:
@@ -136,6 +169,8 @@ def test_the_rate_rises_stays_and_falls() -> None:
         (["train", "--data", "{spots}", "--size", "100", "-o", "{out}"], "--size a multiple of 128"),
         (["train", "--data", "{spots}", "--crops", "0", "-o", "{out}"], "whole numbers above 0"),
         (["train", "--data", "{spots}", "--start", "{broken}", "-o", "{out}"], "expected a checkpoint"),
+        (["train", "--data", "{spots}", "--start", "{torn}", "-o", "{out}"], "expected an .onnx file"),
+        (["train", "--data", "{spots}", "--start", "{bare}", "-o", "{out}"], "one without its card"),
         (["export", "{broken}", "-o", "{out}/a.onnx"], "expected a checkpoint"),
         (["calibrate", "{broken}", "--data", "{spots}", "-o", "{out}"], "expected a checkpoint"),
     ],
@@ -150,9 +185,12 @@ def test_what_cannot_be_used_is_one_line_and_2(
 ) -> None:
     broken = tmp_path / "broken.ckpt"
     shutil.copy(spots / "images" / "000000.jpg", broken)
+    torn, bare = tmp_path / "torn.onnx", tmp_path / "bare.onnx"
+    shutil.copy(broken, torn)
+    onnx.save(onnx.helper.make_model(onnx.helper.make_graph([], "nothing", [], [])), bare)
     places = {
-        "spots": spots, "frigate": repository / "data" / "frigate" / "target.toml", "broken": broken,
-        "out": tmp_path / "out",
+        "torn": torn, "bare": bare, "spots": spots, "frigate": repository / "data" / "frigate" / "target.toml",
+        "broken": broken, "out": tmp_path / "out",
     }  # fmt: skip
     assert main([argument.format(**places) for argument in arguments]) == 2
     error = capsys.readouterr().err

@@ -8,7 +8,15 @@ import torch
 from scipy.stats import multivariate_normal, multivariate_t
 
 from fairlead.train.labels import Batch
-from fairlead.train.losses import covariance_loss, gaussian_loss, landmark_weight, mean_of, visibility_loss, whitened
+from fairlead.train.losses import (
+    covariance_loss,
+    gaussian_loss,
+    landmark_weight,
+    mean_of,
+    presence_loss,
+    visibility_loss,
+    whitened,
+)
 from fairlead.train.networks.prediction import Prediction
 
 
@@ -27,6 +35,7 @@ def prediction() -> Prediction:
         pixels=torch.tensor([[[2.0, 6.0], [5.5, 0.0], [9.0, 9.0]]], requires_grad=True),
         cholesky=torch.tensor([[[0.3, -0.2, 0.7], [-0.5, 0.4, -0.3], [0.0, 0.0, 0.0]]], requires_grad=True),
         visible=torch.tensor([[1.0, -2.0, 0.5]]),
+        present=torch.tensor([1.5]),
         maps=(),
     )
 
@@ -76,3 +85,10 @@ def test_what_is_outside_weighs_nothing(batch: Batch, prediction: Prediction) ->
     assert mean_of(torch.ones(1, 3), torch.zeros(1, 3)).item() == 0.0
     cross = visibility_loss(prediction, batch)[0]
     assert cross.tolist() == pytest.approx([np.log1p(np.exp(-1.0)), np.log1p(np.exp(-2.0)), np.log1p(np.exp(0.5))])
+
+
+def test_a_hidden_landmark_shows_that_the_target_is_there(batch: Batch, prediction: Prediction) -> None:
+    hidden, empty = torch.tensor([[0, 1, 0]]), torch.tensor([[0, 0, 0]])
+    there = presence_loss(prediction, batch._replace(visibility=hidden)).item()
+    assert there == pytest.approx(np.log1p(np.exp(-1.5)))
+    assert presence_loss(prediction, batch._replace(visibility=empty)).item() == pytest.approx(there + 1.5)

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The networks are the published ones, and find the middle of a heat where it is, to a fraction of a pixel."""
 
+import numpy as np
 import pytest
 import torch
 from torch import Tensor, nn
 
 from fairlead.train.networks.catalogue import NAMES, make_network
 from fairlead.train.networks.heat import expectation, gaussian_rows
+from fairlead.train.networks.pooling import Presence, seen_if_present
 from fairlead.train.networks.rtmpose import SIGMA_BINS, RtmPose, row_expectation
 from fairlead.train.networks.tinypose import SIGMA, Blur, TinyPose, dark
 
@@ -16,8 +18,9 @@ PLACES = torch.tensor([[[101.5, 61.5], [33.0, 90.25], [64.7, 40.9], [95.2, 93.0]
 
 
 def own_parameters(network: nn.Module) -> int:
-    """Of what is published: without the head for covariance and visibility."""
-    return sum(p.numel() for name, p in network.named_parameters() if not name.startswith("landmark."))
+    """Of what is published: without the heads for covariance, visibility and presence."""
+    ours = ("landmark.", "presence.")
+    return sum(p.numel() for name, p in network.named_parameters() if not name.startswith(ours))
 
 
 @pytest.mark.parametrize(("size", "published_million"), [("t", 3.34), ("s", 5.47), ("m", 13.59)])
@@ -39,7 +42,31 @@ def test_every_network_answers_for_every_landmark(name: str) -> None:
     assert found.pixels.shape == (2, 5, 2)
     assert found.cholesky.shape == (2, 5, 3)
     assert found.visible.shape == (2, 5)
-    assert all(torch.isfinite(part).all() for part in (found.pixels, found.cholesky, found.visible))
+    assert found.present.shape == (2,)
+    parts = (found.pixels, found.cholesky, found.visible, found.present)
+    assert all(torch.isfinite(part).all() for part in parts)
+    assert (found.visible < found.present[:, None]).all()
+
+
+def test_a_landmark_is_seen_if_the_target_is_there_and_it_is_not_hidden() -> None:
+    """The product of two chances, also where one is nearly 0 or 1 in single precision."""
+    seen, present = torch.tensor([[0.3, -2.0, 60.0, -60.0]]), torch.tensor([1.2])
+    found = seen_if_present(seen, present)
+    assert torch.allclose(found[0, :2].sigmoid(), seen[0, :2].sigmoid() * present.sigmoid())
+    assert found[0, 2].item() == pytest.approx(1.2)
+    assert found[0, 3].item() == pytest.approx(-60.0 - np.log1p(np.exp(-1.2)))
+
+
+def test_presence_does_not_ask_how_large_the_picture_is() -> None:
+    """One cell of many says that the target is there."""
+    presence = Presence(3).eval()
+    presence.layers = nn.Conv2d(3, 1, 1)
+    nn.init.ones_(presence.layers.weight)
+    nn.init.constant_(presence.layers.bias, -20.0)
+    for side in (8, 32):
+        features = torch.zeros(1, 3, side, side)
+        features[0, :, 2, 5] = 10.0
+        assert presence(features).item() == pytest.approx(10.0, abs=0.1)
 
 
 def test_an_unknown_network_is_named() -> None:

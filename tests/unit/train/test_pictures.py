@@ -10,7 +10,7 @@ import pytest
 from fairlead.cli import main
 from fairlead.io.bop import BopFrame, write_bop
 from fairlead.io.errors import InputError
-from fairlead.io.target import save_target
+from fairlead.io.target import load_target, save_target
 from fairlead.opencv.filters import write_image
 from fairlead.train.pictures import COLUMNS, open_pictures, seen_from
 from fairlead.types import Target
@@ -56,6 +56,20 @@ def test_windows_of_a_sequence_are_labelled(spread: float, tmp_path: Path) -> No
             weights = near * picture.image.astype(float).max(axis=2)
             found = [(weights * each).sum() / weights.sum() for each in (u, v)]
             assert np.abs(found - picture.pixels[k]).max() < 0.1
+
+
+def test_a_clip_is_a_sequence(repository: Path) -> None:
+    """Windows of the shipped clip: where a visible landmark is labelled depends on the window, its pixel does not."""
+    clip = repository / "data" / "clips" / "orbit-2.0"
+    names = load_target(clip / "target_true.toml").landmarks
+    count, found = open_pictures(clip, names, 256, seed=0)
+    one, other = (next(each) for each in (found, open_pictures(clip, names, 256, seed=1)[1]))
+    assert count == 181
+    assert (one.visibility == 2).sum() > 10
+    assert not np.allclose(one.pixels, other.pixels)
+    assert 1910.0 / one.focal_px == pytest.approx(
+        np.ptp(other.pixels[:, 0]) / np.ptp(one.pixels[:, 0]) * 1910.0 / other.focal_px
+    )
 
 
 def test_a_sequence_of_other_landmarks_is_refused(tmp_path: Path) -> None:

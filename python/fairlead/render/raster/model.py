@@ -46,6 +46,11 @@ class Model:
         self.version += 1
         self.measure(vertices)
 
+    def release(self) -> None:
+        """Give the graphics processor its memory back; the model cannot be drawn any more."""
+        for part in (self.painted, self.numbered, self.dark, self._buffer):
+            part.release()
+
     def count(self, pixels_per_m: float) -> int:
         """Vertices of the parts that are thick enough to be seen; all if their thickness is not known."""
         if self._thickness is None:
@@ -72,12 +77,15 @@ class Model:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Shot:
-    """One view of the world. `others` are drawn too, each where its T_world_model puts it."""
+    """One view of the world. `others` are drawn too, each where its T_world_model puts it, and the wake behind the
+    target, or where T_world_wake puts it.
+    """
 
     camera: Camera
     T_camera_target: Matrix4
     T_world_target: Matrix4
     others: Sequence[tuple[Model, Matrix4]] = ()
+    T_world_wake: Matrix4 | None = None
 
     @property
     def T_camera_world(self) -> Matrix4:

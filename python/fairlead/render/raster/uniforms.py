@@ -72,9 +72,10 @@ def background_uniforms(
     values |= _mirror(shot, target, surroundings)
     values |= haze(shot, surroundings)
     if surroundings.wake is not None:
-        T_target_eye = geometry.inverse(shot.T_world_target) @ geometry.inverse(eye_of_world(shot))
-        level = T_target_eye[:2, :2] / np.linalg.norm(T_target_eye[:2, :2], axis=1, keepdims=True)
-        values["hull_of_eye"] = np.column_stack([level, level @ (eye - shot.T_world_target[:3, 3])[:2]]).T
+        T_world_hull = shot.T_world_target if shot.T_world_wake is None else shot.T_world_wake
+        T_hull_eye = geometry.inverse(T_world_hull) @ geometry.inverse(eye_of_world(shot))
+        level = T_hull_eye[:2, :2] / np.linalg.norm(T_hull_eye[:2, :2], axis=1, keepdims=True)
+        values["hull_of_eye"] = np.column_stack([level, level @ (eye - T_world_hull[:3, 3])[:2]]).T
         for name, wake in zip(("near_box", "far_box"), surroundings.wake, strict=True):
             x, y = wake.x, wake.y
             values[name] = np.array([x[0], y[0], 1.0 / (x[1] - x[0]), 1.0 / (y[1] - y[0])])

@@ -19,7 +19,7 @@ class ScaleNorm(nn.Module):
 
     def forward(self, x: Tensor) -> Tensor:
         """(..., d) -> (..., d)."""
-        return self.g * self.root * x / x.norm(dim=-1, keepdim=True).clamp_min(1e-5)
+        return self.g * (self.root * x / x.norm(dim=-1, keepdim=True).clamp_min(1e-5))
 
 
 class GatedAttention(nn.Module):

@@ -13,7 +13,7 @@ from torch import Tensor, nn
 
 from fairlead.train.networks.cspnext import CspNext
 from fairlead.train.networks.layers import ConvBnSiLU, Separable
-from fairlead.train.networks.pooling import LandmarkHead
+from fairlead.train.networks.pooling import LandmarkHead, Presence, seen_if_present
 from fairlead.train.networks.prediction import Prediction
 
 STRIDE = 4
@@ -36,6 +36,7 @@ class Heat(nn.Module):
         self.last = nn.Sequential(Separable(WIDTH, WIDTH), Separable(WIDTH, WIDTH))
         self.heat = nn.Conv2d(WIDTH, landmarks, 1)
         self.landmark = LandmarkHead(landmarks, WIDTH + 3)
+        self.presence = Presence(self.backbone.channels[-1])
 
     def forward(self, images: Tensor) -> Prediction:
         """(b, 3, h, w), normalised."""
@@ -46,8 +47,10 @@ class Heat(nn.Module):
         x = self.last(x)
         logits = self.heat(x).float()
         pixels, known = expectation(logits, x.float())
-        cholesky, visible = self.landmark(known)
-        return Prediction(pixels=pixels, cholesky=cholesky, visible=visible, maps=(logits,))
+        cholesky, seen = self.landmark(known)
+        present = self.presence(maps[-1])
+        visible = seen_if_present(seen, present)
+        return Prediction(pixels=pixels, cholesky=cholesky, visible=visible, present=present, maps=(logits,))
 
     def map_loss(self, maps: tuple[Tensor, ...], pixels: Tensor) -> Tensor:
         """(b, n): cross entropy of the map's softmax to a Gaussian of SIGMA cells, less the Gaussian's entropy."""

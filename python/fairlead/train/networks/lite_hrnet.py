@@ -113,7 +113,7 @@ def separable(inputs: int, outputs: int, stride: int = 1) -> nn.Module:
 
 
 class LiteHrNet(nn.Module):
-    """Image to one map of stride 4, after a head that goes from coarse to fine."""
+    """Image to a map of stride 4, after a head that goes from coarse to fine, and the coarsest of the branches."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -131,8 +131,8 @@ class LiteHrNet(nn.Module):
             separable(WIDTHS[i], WIDTHS[i - 1] if i else WIDTHS[0]) for i in reversed(range(len(WIDTHS)))
         )
 
-    def forward(self, x: Tensor) -> Tensor:
-        """(b, 3, h, w) -> (b, WIDTHS[0], h / 4, w / 4)."""
+    def forward(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """(b, 3, h, w) -> (b, WIDTHS[0], h / 4, w / 4), (b, WIDTHS[-1], h / 32, w / 32)."""
         maps = [self.stem(x)]
         steps = cast(tuple[Sequence[Sequence[nn.Module]], Sequence[Sequence[nn.Module]]], (self.enter, self.stages))
         for enter, stage in zip(*steps, strict=True):
@@ -145,4 +145,4 @@ class LiteHrNet(nn.Module):
                 x = x + F.interpolate(y, size=x.shape[2:], mode="bilinear", align_corners=False)
             y = layer(x)
         assert y is not None
-        return y
+        return y, maps[-1]

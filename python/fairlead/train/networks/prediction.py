@@ -17,5 +17,7 @@ class Prediction:
     """(b, n, 3): log l11, log l22, l21 of the covariance L L^T [px]."""
     visible: Tensor
     """(b, n) logit of the landmark being seen."""
+    present: Tensor
+    """(b,) logit of the target being in the crop; `visible` has it in it."""
     maps: tuple[Tensor, ...]
     """What the labels are compared with: heatmap logits (b, n, h, w), or two of SimCC (b, n, bins)."""

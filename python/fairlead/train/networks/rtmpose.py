@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """RTMPose (Jiang et al. 2023): CSPNeXt, a gated attention unit over landmarks, SimCC.
 
-What is published, and beside it covariance and visibility from the same tokens. SimCC (Li et al. 2022): one row of
+What is published, and beside it covariance, visibility and presence. SimCC (Li et al. 2022): one row of
 bins for each axis, BINS a pixel; bin i lies at i / BINS px.
 """
 
@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 from fairlead.train.networks.attention import GatedAttention, ScaleNorm
 from fairlead.train.networks.cspnext import CspNext
-from fairlead.train.networks.pooling import LandmarkHead
+from fairlead.train.networks.pooling import LandmarkHead, Presence, seen_if_present
 from fairlead.train.networks.prediction import Prediction
 
 BINS = 2
@@ -39,16 +39,20 @@ class RtmPose(nn.Module):
         self.across = nn.Linear(DIMENSION, BINS * width, bias=False)
         self.down = nn.Linear(DIMENSION, BINS * height, bias=False)
         self.landmark = LandmarkHead(landmarks, DIMENSION + 4)
+        self.presence = Presence(self.backbone.channels[-1])
 
     def forward(self, images: Tensor) -> Prediction:
         """(b, 3, h, w), normalised."""
-        tokens = self.attention(self.lift(self.tokens(self.backbone(images)[-1]).flatten(2)))
+        features = self.backbone(images)[-1]
+        tokens = self.attention(self.lift(self.tokens(features).flatten(2)))
         rows = (self.across(tokens).float(), self.down(tokens).float())
         found = [row_expectation(row) for row in rows]
         pixels = torch.stack([at for at, _ in found], dim=-1)
         known = torch.cat([tokens, *(what for _, what in found)], dim=-1)
-        cholesky, visible = self.landmark(known)
-        return Prediction(pixels=pixels, cholesky=cholesky, visible=visible, maps=rows)
+        cholesky, seen = self.landmark(known)
+        present = self.presence(features)
+        visible = seen_if_present(seen, present)
+        return Prediction(pixels=pixels, cholesky=cholesky, visible=visible, present=present, maps=rows)
 
     def map_loss(self, maps: tuple[Tensor, ...], pixels: Tensor) -> Tensor:
         """(b, n): divergence of the label's softmax from the row's, x and y, mean over bins; both times 10."""

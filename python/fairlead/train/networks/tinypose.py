@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """PP-TinyPose (PaddleDetection): Lite-HRNet, one heatmap a landmark at stride 4, DARK decoding (Zhang et al. 2020).
 
-What is published, and beside it covariance and visibility from the features under the peak.
+What is published, and beside it covariance and visibility from the features under the peak, and presence.
 """
 
 import torch
@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 from fairlead.train.networks.heat import STRIDE, expectation, gaussian_rows
 from fairlead.train.networks.lite_hrnet import WIDTHS, LiteHrNet
-from fairlead.train.networks.pooling import LandmarkHead
+from fairlead.train.networks.pooling import LandmarkHead, Presence, seen_if_present
 from fairlead.train.networks.prediction import Prediction
 
 SIGMA = 2.0
@@ -31,14 +31,18 @@ class TinyPose(nn.Module):
         self.heat = nn.Conv2d(WIDTHS[0], landmarks, 1)
         self.blur = Blur(landmarks)
         self.landmark = LandmarkHead(landmarks, WIDTHS[0] + 3)
+        self.presence = Presence(WIDTHS[-1])
 
     def forward(self, images: Tensor) -> Prediction:
         """(b, 3, h, w), normalised."""
-        features = self.backbone(images).float()
+        features, coarse = self.backbone(images)
+        features = features.float()
         heat = self.heat(features).float()
         _, known = expectation(heat, features)
-        cholesky, visible = self.landmark(known)
-        return Prediction(pixels=dark(heat.detach(), self.blur), cholesky=cholesky, visible=visible, maps=(heat,))
+        cholesky, seen = self.landmark(known)
+        present = self.presence(coarse)
+        visible, pixels = seen_if_present(seen, present), dark(heat.detach(), self.blur)
+        return Prediction(pixels=pixels, cholesky=cholesky, visible=visible, present=present, maps=(heat,))
 
     def map_loss(self, maps: tuple[Tensor, ...], pixels: Tensor) -> Tensor:
         """(b, n): mean square difference from a Gaussian of SIGMA cells."""
