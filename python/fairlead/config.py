@@ -120,7 +120,7 @@ class RenderConfig:
     """Render a target with a mesh: sequences with exact truth, or crops to train a detector with; tags: make a mesh."""
 
     sequence: Positional[str]
-    """orbit-2.0, rendezvous-10, rendezvous-20, rendezvous-30, landing, crops, a truth.csv; or tags: the mesh of a bundle of tags."""
+    """orbit-2.0, rendezvous-10, -20 or -30, landing, crops, a truth.csv; or tags: the mesh of a bundle of tags."""
     output: Annotated[Path, arg(aliases=["-o"])]
     """Folder for the images; what is there already is not rendered again. Of tags: a .ply file."""
     target: Path | None = None
