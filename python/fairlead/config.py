@@ -117,12 +117,12 @@ class SimulateConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class RenderConfig:
-    """Render a target with a mesh: sequences with exact truth, or crops to train a detector with."""
+    """Render a target with a mesh: sequences with exact truth, or crops to train a detector with; tags: make a mesh."""
 
     sequence: Positional[str]
-    """orbit-2.0, rendezvous-10, rendezvous-20, rendezvous-30, landing, crops, or a truth.csv."""
+    """orbit-2.0, rendezvous-10, -20 or -30, landing, crops, a truth.csv; or tags: the mesh of a bundle of tags."""
     output: Annotated[Path, arg(aliases=["-o"])]
-    """Folder for the images; what is there already is not rendered again."""
+    """Folder for the images; what is there already is not rendered again. Of tags: a .ply file."""
     target: Path | None = None
     """target.toml that names a mesh; the frigate if not given."""
     camera: Path | None = None
@@ -131,8 +131,16 @@ class RenderConfig:
     """full: Cycles, seconds an image. draft: OpenGL, many a second. Sequences are full, crops draft if not said."""
     samples: int = 16
     """Light paths per pixel at full quality: fewer are grainy, more take longer."""
-    surroundings: Literal["sea", "space"] = "sea"
-    """What the target is in."""
+    surroundings: Literal["sea", "space", "room"] = "sea"
+    """What the target is in. room: crops alone; they are seen from near, among things that lie about."""
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    """Direction in target axes that is up as the target is usually held; for crops."""
+    dictionary: str | None = None
+    """Family of the tags, as OpenCV spells it (DICT_4X4_100); for tags."""
+    quiet: float = 1.0
+    """White margin of the tags [cells]; for tags."""
+    handle: tuple[float, float, float] | None = None
+    """End of a rod from the middle of the bundle, if it has one [m]; for tags."""
     weather: Literal["fog", "rain", "snow", "glare", "dusk", "night", "low-contrast"] | None = None
     """Between target and camera; crops draw their own."""
     strength: float = 0.5

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fairlead import geometry
 from fairlead.io.camera import load_camera
 from fairlead.io.errors import InputError
 from fairlead.io.poses import read_truth
@@ -17,14 +18,17 @@ from fairlead.render.errors import RenderError
 from fairlead.render.flights import FLIGHTS, FRIGATE_M, Placed, Swell, fly, placed_from_truth
 from fairlead.render.job import Job, Quality, Setting
 from fairlead.render.raster.matrices import check_pinhole
+from fairlead.render.surface_file import save_surface
 from fairlead.render.surroundings import Kind
 from fairlead.render.weather import Kind as WeatherKind
 from fairlead.render.weather import Weather
-from fairlead.types import Target
+from fairlead.types import Matrix3, Target, Vector3
 
-CROPS = "crops"
+CROPS, TAGS = "crops", "tags"
 NEAR, FAR = 2.1, 20.9
 """Range of crops in units of the landmarks' diagonal: 0.3 to 3 km for the frigate."""
+IN_REACH = (2.5, 12.0)
+"""The same in a room."""
 
 
 def render(
@@ -32,6 +36,10 @@ def render(
     output: Path,
     *,
     target: Path | None = None,
+    dictionary: str | None = None,
+    quiet: float = 1.0,
+    handle: tuple[float, float, float] | None = None,
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0),
     camera: Path | None = None,
     quality: Quality | None = None,
     samples: int = 16,
@@ -56,14 +64,18 @@ def render(
     threads: int | None = None,
     progress: ProgressFactory = silent,
 ) -> int:
-    """Render crops, a named flight, or the poses of a truth.csv. Returns how many pictures were made.
+    """Render crops, a named flight, or the poses of a truth.csv, or write the mesh of a bundle of tags.
+
+    Returns how many pictures were made.
 
     Raises RenderError (what this machine or this target cannot do) or InputError, one line each.
     """
     folder = shipped_data("frigate") if target is None else target.parent
     model = load_target(folder / "target.toml" if target is None else target)
+    if sequence == TAGS:
+        _write_tags(model, output, dictionary, quiet, handle)
+        return 0
     lens = load_camera(folder / "camera.yaml" if camera is None else camera)
-    check_pinhole(lens)
     if sequence == CROPS:
         from fairlead.render.crops import CropJob, render_crops
 
@@ -73,7 +85,7 @@ def render(
             folder=output,
             count=count,
             empty_share=empty,
-            envelope=_envelope(model, surroundings),
+            envelope=envelope_of(model, surroundings, up),
             size=size,
             seed=seed,
             surroundings=surroundings,
@@ -82,6 +94,9 @@ def render(
             threads=threads,
         )
         return render_crops(crops, jobs=jobs, progress=progress)
+    check_pinhole(lens)
+    if surroundings == "room":
+        raise RenderError("--surroundings room: there are crops of it, no flights")
     flown = _placed(sequence, model, stride, Swell() if swell else None, surroundings)
     setting = Setting(surroundings=surroundings, sun_elevation_deg=sun_elevation_deg, wind_m_s=wind_m_s)
     job = Job(
@@ -139,9 +154,38 @@ def _placed(sequence: str, target: Target, stride: int, swell: Swell | None, sur
     return placed[::stride] if stride > 1 else placed
 
 
-def _envelope(target: Target, surroundings: Kind) -> Envelope:
+def envelope_of(target: Target, surroundings: Kind, up: tuple[float, float, float]) -> Envelope:
     """Where crops are seen from."""
     low, high = target.positions.min(axis=0), target.positions.max(axis=0)
     size = float(np.linalg.norm(high - low))
+    level = _upright(np.array(up))
+    if surroundings == "room":
+        near, far = (size * times for times in IN_REACH)
+        return Envelope(ranges_m=(near, far), elevations_deg=(-50.0, 60.0), R_level_target=level, roll_deg=12.0)
     elevations = (2.0, 40.0) if surroundings == "sea" else (-80.0, 80.0)
-    return Envelope(ranges_m=(NEAR * size, FAR * size), elevations_deg=elevations)
+    return Envelope(ranges_m=(NEAR * size, FAR * size), elevations_deg=elevations, R_level_target=level)
+
+
+def _upright(up: Vector3) -> Matrix3:
+    """The shortest turn of `up` to z: R up = z |up|. Raises RenderError for zeros."""
+    length = float(np.linalg.norm(up))
+    if not np.isfinite(length) or length == 0.0:
+        raise RenderError(f"--up: expected a direction, got {up.tolist()}")
+    axis = np.cross(up / length, [0.0, 0.0, 1.0])
+    sine, cosine = float(np.linalg.norm(axis)), float(up[2] / length)
+    if sine < 1e-9:
+        return np.eye(3) if cosine > 0.0 else np.diag([1.0, -1.0, -1.0])
+    return geometry.exp_so3(axis / sine * np.arctan2(sine, cosine))
+
+
+def _write_tags(
+    target: Target, path: Path, family: str | None, quiet: float, handle: tuple[float, float, float] | None
+) -> None:
+    """The mesh that the target's tags are on. Raises RenderError: no family, no tags, not a .ply."""
+    from fairlead.render.tagged import tagged_surface
+
+    if family is None or path.suffix.lower() != ".ply":
+        raise RenderError("render tags: expected --dictionary, for example DICT_4X4_100, and a .ply file for -o")
+    surface = tagged_surface(target, family, quiet=quiet, handle=None if handle is None else np.array(handle))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    save_surface(path, surface)

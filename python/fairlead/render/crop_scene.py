@@ -7,16 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from fairlead import geometry
+from fairlead.render.crop_clutter import Clutter
 from fairlead.render.distractors import island, other_ship
 from fairlead.render.ocean import WaveField, Waves
 from fairlead.render.raster.model import Model
 from fairlead.render.raster.renderer import Renderer
 from fairlead.render.raster.vertices import Vertices, open_sky, pack, thickest_first
 from fairlead.render.raycast import RayCaster
+from fairlead.render.room import in_a_room
 from fairlead.render.surface import Surface
 from fairlead.render.surroundings import Kind, Surroundings, at_sea, in_space
 from fairlead.render.variations import Warp, repainted
-from fairlead.types import Matrix4, Points3, Target
+from fairlead.types import Matrix3, Matrix4, Points3, Target
 
 SHIPS = 6
 """Other ships of a block."""
@@ -38,7 +40,9 @@ class CropScene:
 class Stage:
     """Sets one scene after another on one renderer."""
 
-    def __init__(self, renderer: Renderer, target: Target, surface: Surface, kind: Kind) -> None:
+    def __init__(
+        self, renderer: Renderer, target: Target, surface: Surface, kind: Kind, R_level_target: Matrix3
+    ) -> None:
         surface, thickness = thickest_first(surface)
         self._renderer, self._target, self._surface, self._kind = renderer, target, surface, kind
         shares = open_sky(RayCaster(surface), np.random.default_rng(0))
@@ -49,6 +53,9 @@ class Stage:
         self.painted = surface
         self._ships: list[Model] = []
         rng = np.random.default_rng(5)
+        self._level = np.eye(4)
+        self._level[:3, :3] = R_level_target
+        self._room = Clutter(renderer, target, R_level_target, rng) if kind == "room" else None
         self._islands = [renderer.add(pack(island(rng))) for _ in range(2)] if kind == "sea" else []
 
     def set(self, rng: np.random.Generator) -> CropScene:
@@ -59,6 +66,8 @@ class Stage:
         if self._kind == "space":
             elevation = float(np.arcsin(rng.uniform(-1.0, 1.0)))
             surroundings = in_space(rng, sun_elevation_rad=elevation, sun_azimuth_rad=azimuth)
+        elif self._kind == "room":
+            surroundings = in_a_room(rng)
         else:
             surroundings = self._sea(surface, azimuth, rng)
             self._meet_others(rng)
@@ -105,12 +114,17 @@ class Stage:
         """T_world_target: somewhere on the sea, with the roll and heave of the block."""
         if self._kind == "space":
             return np.eye(4)
+        if self._room is not None:
+            tilt = np.array([0.0, 0.0, 0.0, *(0.3 * rng.standard_normal(2)), rng.uniform(0.0, 2.0 * np.pi)])
+            return geometry.exp_se3(tilt) @ self._level
         T = self._T_level_target.copy()
         T[:2, 3] += rng.uniform(-5000.0, 5000.0, 2)
         return T
 
     def others(self, T_world_target: Matrix4, rng: np.random.Generator) -> list[tuple[Model, Matrix4]]:
         """Ships near the target in one crop of three, land in one of seven; never in its place."""
+        if self._room is not None:
+            return self._room.about(T_world_target, rng)
         found: list[tuple[Model, Matrix4]] = []
         if not self._ships:
             return found

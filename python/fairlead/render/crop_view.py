@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The geometry of a training crop: a view from anywhere in the flight envelope, cut out as a detector cuts it out."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fairlead import geometry
 from fairlead.render.viewpoints import direction, look_at
-from fairlead.types import Camera, Matrix4, Points3
+from fairlead.types import Camera, Matrix3, Matrix4, Points3
 
 LEAST_PX = 24
 """No crop is drawn in fewer pixels."""
@@ -22,6 +22,10 @@ class Envelope:
 
     ranges_m: tuple[float, float]
     elevations_deg: tuple[float, float]
+    R_level_target: Matrix3 = field(default_factory=lambda: np.eye(3))
+    """Target axes -> axes whose z is up as the target is usually held; elevations are counted from there."""
+    roll_deg: float = 6.0
+    """Of the camera about its axis, one standard deviation."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,11 +44,14 @@ def draw_view(X: Points3, camera: Camera, envelope: Envelope, size: int, rng: np
     range_m = float(np.exp(rng.uniform(np.log(low), np.log(high))))
     elevation = np.radians(rng.uniform(*envelope.elevations_deg))
     middle = 0.5 * (X.min(axis=0) + X.max(axis=0))
+    middle = envelope.R_level_target @ middle
     eye = middle + range_m * direction(float(rng.uniform(0.0, 2.0 * np.pi)), float(elevation))
-    aside = np.append(0.12 * rng.standard_normal(2), np.radians(6.0) * rng.standard_normal())
+    aside = np.append(0.12 * rng.standard_normal(2), np.radians(envelope.roll_deg) * rng.standard_normal())
     turn = np.eye(4)
     turn[:3, :3] = geometry.exp_so3(aside)
-    T = turn @ look_at(eye[None], middle)[0]
+    level = np.eye(4)
+    level[:3, :3] = envelope.R_level_target
+    T = turn @ look_at(eye[None], middle)[0] @ level
     pixels = geometry.project(replace(camera, model="pinhole", distortion=np.zeros(0)), geometry.transform(T, X))
     box_low, box_high = np.nanmin(pixels, axis=0), np.nanmax(pixels, axis=0)
     side = PAD * float((box_high - box_low).max()) / float(np.exp(rng.uniform(np.log(0.6), np.log(1.4))))

@@ -141,7 +141,7 @@ class CropMaker:
         self._job = job
         surface = load_surface(job.target.mesh)
         self._renderer = Renderer(job.size, job.size)
-        self._stage = Stage(self._renderer, job.target, surface, job.surroundings)
+        self._stage = Stage(self._renderer, job.target, surface, job.surroundings, job.envelope.R_level_target)
 
     def make(self, block: int) -> list[dict[str, Any]]:
         """Write the pictures of a block; returns their labels."""
@@ -183,6 +183,9 @@ class CropMaker:
         seen = see(_moved(job.target, scene), view.camera, shot.T_camera_target, scene.caster)
         visibility = np.array([{"outside": 0, "hidden": 1, "visible": 2}[state] for state in seen.states])
         picture, covered = self._photograph(image, shot, scene, rng)
+        if job.surroundings == "room":  # where things stand so near that they hide parts of the target
+            truth = self._renderer.truth(shot, self._stage.model)
+            covered |= np.isfinite(truth.depth) & ~truth.mask
         for k in np.nonzero(visibility == 2)[0]:
             place = (seen.pixels[k] + 0.5) * (view.native.width / job.size)
             u, v = np.clip(np.floor(place), 0, view.native.width - 1).astype(int)
@@ -239,7 +242,7 @@ class CropMaker:
     ) -> tuple[Picture, np.ndarray]:
         """The picture as the flight's camera would have made it, and which pixels something stands before."""
         sky, size = scene.surroundings.sky, shot.camera.width
-        sensor = draw_sensor(sky.level_irradiance, rng)
+        sensor = draw_sensor(scene.surroundings.metered, rng)
         if self._job.surroundings == "sea" and rng.random() < self._job.weather_share:
             weather = Weather(
                 kind=KINDS[int(rng.integers(len(KINDS)))], strength=float(rng.uniform(0.05, 0.75)), seed=1

@@ -30,6 +30,8 @@ SUN = np.array([1.0, 0.98, 0.95]) * np.pi
 ROWS, COLUMNS = 128, 512
 
 SkyImage = Float32[np.ndarray, "r c 3"]
+Backdrop = Float32[np.ndarray, "h w 3"]
+"""Radiance all around: row r is the angle pi (r + 0.5) / h from straight up, column c the azimuth as in a Sky."""
 Harmonics = Float64[np.ndarray, "9 3"]
 
 

@@ -1,18 +1,18 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the target is in: a sea under a sky, or space. The same for both renderers."""
+"""What the target is in: a sea under a sky, space, or a room. The first two are the same for both renderers."""
 
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from fairlead.render.sky import SUN, Sky, make_sky
+from fairlead.render.sky import SUN, Backdrop, Sky, make_sky
 from fairlead.render.surface import Surface
 from fairlead.render.wake import Hull, WakeMap, make_wake
 from fairlead.types import Vector3, Vector4
 
-Kind = Literal["sea", "space"]
+Kind = Literal["sea", "space", "room"]
 
 WATER = (0.0010, 0.0060, 0.0120)
 """Radiance that comes up out of the water, per irradiance on it [1/sr]."""
@@ -34,17 +34,30 @@ class Surroundings:
     earth: Vector4 | None = None
     """In space: direction of the earth, cosine of its angular radius."""
 
+    backdrop: Backdrop | None = None
+    """In a room: what is behind everything; `sky` then is its upper half."""
+
     @property
     def air_per_m(self) -> float:
         """What clear air takes of the light [1/m]: Koschmieder, contrast 2 % at the visibility."""
-        return 0.0 if self.kind == "space" else 3.912 / CLEAR_AIR_M
+        return 3.912 / CLEAR_AIR_M if self.kind == "sea" else 0.0
 
     @property
     def from_below(self) -> Vector3:
         """Radiance of the lower hemisphere, for the light on what looks down."""
         if self.kind == "space":
             return np.zeros(3)
+        if self.backdrop is not None:
+            return self.backdrop[len(self.backdrop) // 2 :: 8, ::8].mean(axis=(0, 1), dtype=np.float64)
         return self.sky.irradiance * 0.03 + np.array(self.water) * self.sky.level_irradiance
+
+    @property
+    def metered(self) -> float:
+        """Irradiance that a light meter sets the exposure by: of level ground, in a room of what faces anywhere."""
+        if self.backdrop is None:
+            return self.sky.level_irradiance
+        lamp = float(self.sky.sun_irradiance.mean())
+        return np.pi * float(self.backdrop[::8, ::8].mean(dtype=np.float64)) + 0.25 * lamp
 
 
 def waterline(surface: Surface) -> Hull:

@@ -215,11 +215,17 @@ def test_crops_keep_pixel_centres() -> None:
     assert pixels[1, 0] == pytest.approx(127.5)
 
 
-@pytest.mark.parametrize("name", ["frigate", "satellite"])
+AROUND = {
+    "frigate": [],
+    "satellite": ["--surroundings", "space"],
+    "marker_pen": ["--surroundings", "room", "--up", "0", "-1", "0"],
+}
+
+
+@pytest.mark.parametrize("name", AROUND)
 def test_crops_are_labelled(name: str, graphics: None, repository: Path, shipped: Callable, tmp_path: Path) -> None:
     target = repository / "data" / name / "target.toml"
-    more = ["--surroundings", "space"] if name == "satellite" else []
-    arguments = ["render", "crops", "--target", str(target), "--count", "6", "--size", "64", *more]
+    arguments = ["render", "crops", "--target", str(target), "--count", "6", "--size", "64", *AROUND[name]]
     for folder in ("one", "two"):
         assert main([*arguments, "-o", str(tmp_path / folder)]) == 0
     names, labels = read_coco(tmp_path / "one" / "annotations.json")

@@ -61,7 +61,8 @@ class Model:
         """The box, and the colour of what a mirror near it shows."""
         places = vertices[:, :3].astype(np.float64)
         self.low, self.high = places.min(axis=0), places.max(axis=0)
-        self.mean_colour = vertices[places[:, 2] > 0.1 * self.high[2], 6:9].mean(axis=0)
+        above = places[:, 2] > 0.1 * self.high[2]
+        self.mean_colour = vertices[above if above.any() else slice(None), 6:9].mean(axis=0)
 
     @property
     def centre(self) -> Vector3:

@@ -70,7 +70,8 @@ class Renderer:
             wakes = [texture_of(self._context, empty, repeat=(False, False)) for _ in range(2)]
         else:
             wakes = [wake_texture(self._context, wake) for wake in surroundings.wake]
-        self._light = [sky_texture(self._context, surroundings.sky), *wakes]
+        behind = sky_texture(self._context, surroundings.sky, surroundings.backdrop)
+        self._light = [behind, *wakes]
         self._surroundings = surroundings
         sky = surroundings.sky
         shared: dict[str, uniforms.Value] = {
@@ -78,7 +79,7 @@ class Renderer:
             "sun_irradiance": sky.sun_irradiance,
             "shade": harmonics(sky, surroundings.from_below),
             "air": surroundings.air_per_m,
-            "space": int(surroundings.kind == "space"),
+            "place": ("sea", "space", "room").index(surroundings.kind),
         }
         _tell(self._paint, shared | {"weathering": surroundings.weathering} | _UNITS)
         earth = np.array([0.0, 0.0, -1.0, 1.1]) if surroundings.earth is None else surroundings.earth

@@ -8,7 +8,7 @@ import numpy as np
 
 from fairlead.render.noise import fractal_tile
 from fairlead.render.ocean import Waves
-from fairlead.render.sky import Sky
+from fairlead.render.sky import Backdrop, Sky
 from fairlead.render.wake import WakeMap
 
 if TYPE_CHECKING:
@@ -25,9 +25,10 @@ def texture_of(context: "moderngl.Context", array: np.ndarray, *, repeat: tuple[
     return texture
 
 
-def sky_texture(context: "moderngl.Context", sky: Sky) -> "moderngl.Texture":
-    """Azimuth repeats, elevation does not."""
-    return texture_of(context, np.minimum(sky.radiance, 100.0), repeat=(True, False))
+def sky_texture(context: "moderngl.Context", sky: Sky, backdrop: Backdrop | None) -> "moderngl.Texture":
+    """Azimuth repeats, elevation does not. Where there is a backdrop, it takes the place of the sky."""
+    radiance = sky.radiance if backdrop is None else backdrop
+    return texture_of(context, np.minimum(radiance, 100.0), repeat=(True, False))
 
 
 def noise_texture(context: "moderngl.Context") -> "moderngl.Texture":

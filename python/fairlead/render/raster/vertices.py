@@ -86,7 +86,7 @@ def open_sky(caster: RayCaster, rng: np.random.Generator) -> Float64[np.ndarray,
     inward = corners.mean(axis=1, keepdims=True) - corners
     lift = 2e-4 * surface.diameter
     places = (corners + 0.08 * inward).reshape(-1, 3)
-    keys = np.round(np.concatenate([places, normals], axis=1), 3)
+    keys = np.round(np.concatenate([places / min(1.0, surface.diameter), normals], axis=1), 3)
     _, first, back = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     normals, places = normals[first], places[first] + lift * normals[first]
     total = np.zeros(len(first))

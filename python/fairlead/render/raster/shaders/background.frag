@@ -118,6 +118,12 @@ vec4 sea(vec3 d, float t)
     return vec4(through_air(radiance, t), min(t, FAR));
 }
 
+// In a room sky_map holds all directions, rows even in the angle from straight up.
+vec3 backdrop(vec3 d)
+{
+    return textureLod(sky_map, vec2(atan(d.y, d.x) / (2.0 * PI), acos(clamp(d.z, -1.0, 1.0)) / PI), 0.0).rgb;
+}
+
 vec3 outer_space(vec3 d)
 {
     vec3 cell = floor(d * 260.0);
@@ -140,7 +146,8 @@ vec3 outer_space(vec3 d)
 void main()
 {
     vec3 d = normalize(ray);
-    if (space == 1) { colour = vec4(outer_space(d), FAR); return; }
+    if (place == 1) { colour = vec4(outer_space(d), FAR); return; }
+    if (place == 2) { colour = vec4(backdrop(d), FAR); return; }
     float curve = (1.0 - d.z * d.z) / (2.0 * 7.3e6);
     float inside = d.z * d.z - 4.0 * curve * height;
     bool hits = d.z < 0.0 && inside > 0.0;

@@ -11,13 +11,13 @@ uniform vec3 sun;               // unit, towards it
 uniform vec3 sun_irradiance;
 uniform vec3 shade[9];          // irradiance of everything else, spherical harmonics
 uniform float air;              // what clear air takes of the light [1/m]
-uniform int space;
+uniform int place;              // 0 sea, 1 space, 2 room
 uniform vec3 haze_left, haze_right; // radiance of the horizon at both edges of the image
 uniform float width;                // of the image [px]
 
 vec3 sky_at(vec3 d, float lod)
 {
-    if (space == 1) return vec3(0.0);
+    if (place == 1) return vec3(0.0);
     float elevation = asin(clamp(d.z, 0.0, 1.0));
     return textureLod(sky_map, vec2(atan(d.y, d.x) / (2.0 * PI), sqrt(elevation / (0.5 * PI))), lod).rgb;
 }
@@ -32,7 +32,7 @@ vec3 irradiance(vec3 n)
 
 vec3 through_air(vec3 radiance, float distance)
 {
-    if (space == 1) return radiance;
+    if (place != 0) return radiance;
     vec3 horizon = mix(haze_left, haze_right, gl_FragCoord.x / width);
     return mix(horizon, radiance, exp(-air * distance));
 }
