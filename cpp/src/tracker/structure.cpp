@@ -26,7 +26,7 @@ Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX&
     : workspace_(static_cast<int>(X0.size())),
       kind_(options.motion),
       jerk_density_(options.jerk_density_m_s25),
-      correlation_time_s_(options.correlation_time_s),
+      shares_(options),
       max_views_(static_cast<std::size_t>(options.max_views)) {
     validate(camera);
     problem_.camera = camera;
@@ -82,7 +82,6 @@ std::vector<Vec3> Structure::landmarks_told() const {
 }
 
 void Structure::interrupt() noexcept {
-    continued_ = false;
     if (path_) path_->restart();
 }
 
@@ -142,8 +141,8 @@ bool Structure::join_newest() noexcept {
     return newest_system(1.0);
 }
 
-/// The view as the solver wants it. Of detections that err alike for a while, a view next to the last one says little
-/// new: docs/motion.md eq. (12).
+/// The view as the solver wants it. Of detections that err alike, a view like those before it says little new:
+/// docs/motion.md eq. (12).
 ViewBlock Structure::make_view(std::int64_t stamp_ns, const SE3& T_start, std::span<const Observation> observations,
                                std::span<const window::RangeMeasurement> ranges) noexcept {
     ViewBlock view = std::move(pool_.back());
@@ -154,13 +153,7 @@ ViewBlock Structure::make_view(std::int64_t stamp_ns, const SE3& T_start, std::s
     for (const Observation& o : observations) view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
     view.ranges.assign(ranges.begin(),
                        ranges.begin() + std::min<std::ptrdiff_t>(std::ssize(ranges), ViewBlock::kMaxRanges));
-    view.share = 1.0;
-    if (correlation_time_s_ > 0.0 && continued_) {
-        const double alike = std::exp(-1e-9 * static_cast<double>(stamp_ns - last_ns_) / correlation_time_s_);
-        view.share = (1.0 - alike) / (1.0 + alike);
-    }
-    last_ns_ = stamp_ns;
-    continued_ = true;
+    view.share = shares_.of(outlook(stamp_ns, T_start, problem_.X));
     return view;
 }
 
@@ -197,6 +190,7 @@ Fusion Structure::fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<cons
         retire(problem_.views.size() - 1);
         return fusion;
     }
+    shares_.take();
     publish();
     const ViewBlock& newest = problem_.views.back();
     fusion.T_camera_target = newest.state.T_camera_target;
