@@ -63,6 +63,8 @@ class Structure {
                                               std::span<const window::RangeMeasurement> ranges) noexcept;
     [[nodiscard]] bool settle_newest(double error) noexcept;
     void settle_on_path(double error) noexcept;
+    void locate_newest(Fusion& fusion) noexcept;
+    bool locate_by_whole_view(Fusion& fusion) noexcept;
     bool join_newest() noexcept;
     bool newest_system(double mu) noexcept;
     bool relinearise(double error) noexcept;

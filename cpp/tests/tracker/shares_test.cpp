@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: fairlead contributors
+// SPDX-License-Identifier: Apache-2.0
+#include "fairlead/tracker/shares.hpp"
+
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+using namespace fairlead;
+
+namespace {
+
+constexpr double kDegree = 0.017453292519943295;
+
+TrackerOptions alike_by(double time_s, double angle_rad, double log_range) {
+    TrackerOptions options;
+    options.correlation_time_s = time_s;
+    options.correlation_angle_rad = angle_rad;
+    options.correlation_log_range = log_range;
+    return options;
+}
+
+/// A camera on a circle, by azimuth, range and time.
+Outlook at(double azimuth, double range, double time_s) {
+    const Vec3 centre(range * std::cos(azimuth), range * std::sin(azimuth), 0.0);
+    const std::vector<Vec3> X{Vec3(1.0, 2.0, 3.0), Vec3(-1.0, -2.0, -3.0)};
+    return outlook(static_cast<std::int64_t>(std::llround(1e9 * time_s)), {Mat33::Identity(), -centre}, X);
+}
+
+std::vector<double> shares_of(Shares shares, int views, const std::function<Outlook(int)>& view) {
+    std::vector<double> all;
+    for (int k = 0; k < views; ++k) {
+        all.push_back(shares.of(view(k)));
+        shares.take();
+    }
+    return all;
+}
+
+double sum(const std::vector<double>& values) {
+    double total = 0.0;
+    for (const double value : values) total += value;
+    return total;
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(without_correlation_every_view_counts_whole) {
+    for (const double share : shares_of(Shares({}), 5, [](int) { return at(0.0, 1000.0, 0.0); }))
+        BOOST_TEST(share == 1.0);
+}
+
+BOOST_AUTO_TEST_CASE(the_share_is_what_a_view_adds_to_the_sum_of_the_inverse_correlations) {
+    const auto view = [](int k) { return at(0.1 * k, 1000.0 * std::exp(-0.3 * std::sin(0.9 * k)), 0.7 * k); };
+    const std::vector<double> shares = shares_of(Shares(alike_by(5.0, 0.2, 0.5)), 12, view);
+    for (int n = 1; n <= 12; ++n) {
+        MatX K(n, n);
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < n; ++j) {
+                const Outlook a = view(i), b = view(j);
+                K(i, j) = std::exp(-0.1 * std::abs(i - j) / 0.2 - std::abs(a.log_range - b.log_range) / 0.5 -
+                                   0.7 * std::abs(i - j) / 5.0);
+            }
+        }
+        const VecX one = VecX::Ones(n);
+        BOOST_TEST(sum({shares.begin(), shares.begin() + n}) == one.dot(K.llt().solve(one)),
+                   boost::test_tools::tolerance(1e-9));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(by_time_alone_it_is_the_mean_of_a_first_order_process_for_any_time) {
+    // 10,000 views, far more than are kept; views that stand for all are a quarter of tau apart, tanh(1/8) / (1/8) off.
+    const std::vector<double> shares =
+        shares_of(Shares(alike_by(2.0, 0.0, 0.0)), 10'000, [](int k) { return at(0.0, 1000.0, 0.04 * k); });
+    BOOST_TEST(sum(shares) == 1.0 + 9'999 * std::tanh(0.04 / 4.0), boost::test_tools::tolerance(0.01));
+    const std::vector<double> seldom =
+        shares_of(Shares(alike_by(2.0, 0.0, 0.0)), 200, [](int k) { return at(0.0, 1000.0, 1.0 * k); });
+    BOOST_TEST(seldom.back() == std::tanh(0.25), boost::test_tools::tolerance(1e-6));
+}
+
+BOOST_AUTO_TEST_CASE(a_hover_is_one_view_however_long) {
+    const auto shaking = [](int k) {
+        return at(0.2 * kDegree * std::sin(17.0 * k), 1000.0 * (1.0 + 0.003 * std::sin(5.3 * k)), 0.04 * k);
+    };
+    BOOST_TEST(sum(shares_of(Shares(alike_by(0.0, 12.0 * kDegree, 1.5)), 5'000, shaking)) < 1.05);
+}
+
+BOOST_AUTO_TEST_CASE(the_way_back_adds_nothing) {
+    const auto there = [](int k) { return at(0.2 * kDegree * k, 1000.0, 0.04 * k); };
+    const auto back = [&](int k) { return there(k < 450 ? k : 899 - k); };
+    const double once = sum(shares_of(Shares(alike_by(0.0, 12.0 * kDegree, 0.0)), 450, there));
+    const double twice = sum(shares_of(Shares(alike_by(0.0, 12.0 * kDegree, 0.0)), 900, back));
+    BOOST_TEST(once == 1.0 + 90.0 / 24.0, boost::test_tools::tolerance(0.01));
+    BOOST_TEST(twice == once, boost::test_tools::tolerance(0.03));
+}
