@@ -8,9 +8,8 @@
 namespace fairlead {
 namespace {
 
-constexpr double kSpacing = 0.25;   // correlation lengths between views that stand for all
-constexpr double kLeast = 1e-6;     // share: a view without any would have no pose
-constexpr double kSingular = 1e-9;  // variance of a view, given the others, that is none
+constexpr double kSpacing = 0.1;  // correlation lengths between places that stand for the views near them
+constexpr double kLeast = 1e-6;   // share: a view without any would have no pose
 
 double inverse(double length) noexcept { return length > 0.0 ? 1.0 / length : 0.0; }
 
@@ -36,62 +35,49 @@ double Shares::likeness(const Outlook& a, const Outlook& b) const noexcept {
                     per_second_ * std::abs(seconds));
 }
 
+/// With g = 1 / range, what a pixel says of a metre, the information sum s g^2 of all views so far has the true variance
+/// sum s g rho g s if each new share is 1 - 2 sum rho s g / g_new.
 double Shares::of(const Outlook& view) noexcept {
     if (white_) return 1.0;
     newest_ = view;
     most_alike_ = 0.0;
-    for (int i = 0; i < n_; ++i) {
-        row_[i] = likeness(view, anchors_[static_cast<std::size_t>(i)]);
-        most_alike_ = std::max(most_alike_, row_[i]);
+    double known = 0.0;
+    for (std::size_t i = 0; i < n_; ++i) {
+        const double alike = likeness(view, places_[i].outlook);
+        known += alike * places_[i].given;
+        if (alike <= most_alike_) continue;
+        most_alike_ = alike;
+        nearest_ = i;
     }
-    L_.topLeftCorner(n_, n_).triangularView<Eigen::Lower>().solveInPlace(row_.head(n_));
-    rest_ = 1.0 - row_.head(n_).squaredNorm();
-    const double more = 1.0 - row_.head(n_).dot(z_.head(n_));
-    news_ = rest_ > kSingular ? more * more / rest_ : 0.0;
-    return std::max(kLeast, news_ - advance_);
+    share_ = std::clamp(1.0 - 2.0 * known * std::exp(view.log_range), kLeast, 1.0);
+    return share_;
 }
 
 void Shares::take() noexcept {
     if (white_) return;
-    const bool stands_for_others = most_alike_ < std::exp(-kSpacing);
-    advance_ = std::max(advance_, news_);
-    if (!stands_for_others) return;
-    advance_ -= news_;
+    const double given = share_ * std::exp(-newest_.log_range);
+    if (most_alike_ > std::exp(-kSpacing)) {
+        places_[nearest_].given += given / most_alike_;  // as the views ahead will feel it
+        return;
+    }
     if (n_ == kCapacity) make_room();
-    append();
+    places_[n_++] = {newest_, given};
 }
 
-/// One more row of the factor.
-void Shares::append() noexcept {
-    const double diagonal = std::sqrt(std::max(rest_, kSingular));
-    L_.row(n_).head(n_) = row_.head(n_).transpose();
-    L_(n_, n_) = diagonal;
-    z_[n_] = (1.0 - row_.head(n_).dot(z_.head(n_))) / diagonal;
-    anchors_[static_cast<std::size_t>(n_++)] = newest_;
-}
-
-/// The older of the two views that are most alike is forgotten, and the newest judged against the others.
+/// Of neighbours in time the two most alike become one.
 void Shares::make_room() noexcept {
-    int forgotten = 0;
+    std::size_t least = 0;
     double most = -1.0;
-    for (int i = 0; i < n_; ++i) {
-        const Outlook& a = anchors_[static_cast<std::size_t>(i)];
-        for (int j = i + 1; j <= n_; ++j) {
-            const double alike = likeness(a, j < n_ ? anchors_[static_cast<std::size_t>(j)] : newest_);
-            if (alike <= most) continue;
-            most = alike;
-            forgotten = i;
-        }
+    for (std::size_t i = 0; i + 1 < n_; ++i) {
+        const double alike = likeness(places_[i].outlook, places_[i + 1].outlook);
+        if (alike <= most) continue;
+        most = alike;
+        least = i;
     }
-    const Outlook newest = newest_;
-    const int kept = n_;
-    n_ = 0;
-    for (int i = 0; i < kept; ++i) {
-        if (i == forgotten) continue;
-        (void)of(anchors_[static_cast<std::size_t>(i)]);
-        append();
-    }
-    (void)of(newest);
+    places_[least + 1].given += most * places_[least].given;
+    std::move(places_.begin() + static_cast<std::ptrdiff_t>(least) + 1, places_.begin() + static_cast<std::ptrdiff_t>(n_),
+              places_.begin() + static_cast<std::ptrdiff_t>(least));
+    --n_;
 }
 
 }  // namespace fairlead

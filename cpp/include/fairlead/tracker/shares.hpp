@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -22,11 +22,9 @@ struct Outlook {
 [[nodiscard]] Outlook outlook(std::int64_t stamp_ns, const SE3& T_camera_target, std::span<const Vec3> X) noexcept;
 
 /// What each view says that those before it did not, where a detector errs alike in views that are alike, docs/motion.md
-/// eq. (12)-(13).
+/// eq. (12) and (15): shares with which the sum of all information is as uncertain as it claims.
 ///
-/// All views together are worth n = 1^T K^-1 1 independent ones, K their correlations; a view's share is what it adds.
-/// Few views stand for all in K, a quarter of a correlation length apart. What a view between them adds is given in
-/// advance of the next of them, so that a camera that hovers, or comes back, gets nothing twice.
+/// Places a tenth of a correlation length apart stand for the views near them, so that memory is bounded.
 class Shares {
   public:
     explicit Shares(const TrackerOptions& options) noexcept;
@@ -37,21 +35,22 @@ class Shares {
     void take() noexcept;
 
   private:
-    static constexpr int kCapacity = 64;
+    static constexpr std::size_t kCapacity = 128;
+    struct Place {
+        Outlook outlook;
+        double given = 0.0;  ///< sum of share / range of the views near it
+    };
     [[nodiscard]] double likeness(const Outlook& a, const Outlook& b) const noexcept;
     void make_room() noexcept;
-    void append() noexcept;
 
     double per_second_ = 0.0, per_radian_ = 0.0, per_log_range_ = 0.0;
     bool white_ = true;
-    std::array<Outlook, kCapacity> anchors_;
-    int n_ = 0;
-    Eigen::Matrix<double, kCapacity, kCapacity> L_;  ///< Cholesky factor of K
-    Eigen::Matrix<double, kCapacity, 1> z_, row_;    ///< L^-1 1 and L^-1 k of the newest view
-    double advance_ = 0.0;                           ///< given to views that do not stand for others
+    std::array<Place, kCapacity> places_;  ///< in the order of time
+    std::size_t n_ = 0;
 
     Outlook newest_;
-    double most_alike_ = 0.0, rest_ = 1.0, news_ = 1.0;
+    double share_ = 1.0, most_alike_ = 0.0;
+    std::size_t nearest_ = 0;
 };
 
 }  // namespace fairlead
