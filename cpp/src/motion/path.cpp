@@ -10,7 +10,8 @@ namespace fairlead::motion {
 namespace {
 
 /// Along the line of sight it is the ranges that agree. View and path may lie far apart across it, and then the tie is
-/// exact for the line halfway between the two: (h - p) . (h/|h| + p/|p|) = (|h| - |p|)(1 + cos), docs/motion.md section 2.
+/// exact for the line halfway between the two: (h - p) . (h/|h| + p/|p|) = (|h| - |p|)(1 + cos), docs/motion.md
+/// section 2.
 void look_halfway(const Vec3& h, const Vec3& p, Tie& tie) noexcept {
     if (!(h.norm() > 0.0 && p.norm() > 0.0) || h.dot(p) <= 0.0) return;
     const double along = kRoughness_m * kRoughness_m;

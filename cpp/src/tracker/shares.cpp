@@ -35,8 +35,8 @@ double Shares::likeness(const Outlook& a, const Outlook& b) const noexcept {
                     per_second_ * std::abs(seconds));
 }
 
-/// With g = 1 / range, what a pixel says of a metre, the information sum s g^2 of all views so far has the true variance
-/// sum s g rho g s if each new share is 1 - 2 sum rho s g / g_new.
+/// With g = 1 / range, what a pixel says of a metre, the information sum s g^2 of all views so far has the true
+/// variance sum s g rho g s if each new share is 1 - 2 sum rho s g / g_new.
 double Shares::of(const Outlook& view) noexcept {
     if (white_) return 1.0;
     newest_ = view;
@@ -75,8 +75,8 @@ void Shares::make_room() noexcept {
         least = i;
     }
     places_[least + 1].given += most * places_[least].given;
-    std::move(places_.begin() + static_cast<std::ptrdiff_t>(least) + 1, places_.begin() + static_cast<std::ptrdiff_t>(n_),
-              places_.begin() + static_cast<std::ptrdiff_t>(least));
+    std::move(places_.begin() + static_cast<std::ptrdiff_t>(least) + 1,
+              places_.begin() + static_cast<std::ptrdiff_t>(n_), places_.begin() + static_cast<std::ptrdiff_t>(least));
     --n_;
 }
 

@@ -185,8 +185,8 @@ void Structure::locate_newest(Fusion& fusion) noexcept {
                  : window::state_covariance(newest, problem_.X, Sigma_, problem_.noise_factor, Yt_, SigmaYt_);
 }
 
-/// A view errs as told, however much its errors are like those before: its pose is what the whole view says, docs/motion.md
-/// eq. (13). The model has learned of those errors already and is put back.
+/// A view errs as told, however much its errors are like those before: its pose is what the whole view says,
+/// docs/motion.md eq. (13). The model has learned of those errors already and is put back.
 bool Structure::locate_by_whole_view(Fusion& fusion) noexcept {
     double& share = problem_.views.back().share;
     const double told = std::exchange(share, 1.0);

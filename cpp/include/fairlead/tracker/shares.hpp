@@ -21,8 +21,8 @@ struct Outlook {
 
 [[nodiscard]] Outlook outlook(std::int64_t stamp_ns, const SE3& T_camera_target, std::span<const Vec3> X) noexcept;
 
-/// What each view says that those before it did not, where a detector errs alike in views that are alike, docs/motion.md
-/// eq. (12) and (15): shares with which the sum of all information is as uncertain as it claims.
+/// What each view says that those before it did not, where a detector errs alike in views that are alike,
+/// docs/motion.md eq. (12) and (15): shares with which the sum of all information is as uncertain as it claims.
 ///
 /// Places a tenth of a correlation length apart stand for the views near them, so that memory is bounded.
 class Shares {
