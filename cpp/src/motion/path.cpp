@@ -3,25 +3,9 @@
 #include "fairlead/motion/path.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 
 namespace fairlead::motion {
-namespace {
-
-/// Along the line of sight it is the ranges that agree. View and path may lie far apart across it, and then the tie is
-/// exact for the line halfway between the two: (h - p) . (h/|h| + p/|p|) = (|h| - |p|)(1 + cos), docs/motion.md
-/// section 2.
-void look_halfway(const Vec3& h, const Vec3& p, Tie& tie) noexcept {
-    if (!(h.norm() > 0.0 && p.norm() > 0.0) || h.dot(p) <= 0.0) return;
-    const double along = kRoughness_m * kRoughness_m;
-    const double across = 0.5 * (tie.covariance.trace() - 3.0 * along);
-    const Vec3 ray = (h.normalized() + p.normalized()).normalized();
-    tie.covariance = along * Mat33::Identity() + across * (Mat33::Identity() - ray * ray.transpose());
-    tie.information = tie.covariance.inverse();
-}
-
-}  // namespace
 
 Path::Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge gauge, std::size_t kept)
     : kind_(kind),
@@ -77,10 +61,7 @@ void Path::tie(const Chain& chain, const SE3& T, std::span<const Vec3> X, const 
                const State& n) noexcept {
     tied_ = measure(kind_, T, X, chain.slice(), chain.gauge_rate_t(), attitude, tie_);
     residual_.setZero();
-    if (!tied_) return;
-    residual_.head(axes_) = tie_.value.head(axes_) - n.head(axes_);
-    const Vec3 from = kind_ == Kind::target ? chain.slice().centre() : Vec3::Zero();
-    if (axes_ == 3) look_halfway(tie_.value - from, n.head<3>() - from, tie_);
+    if (tied_) residual_.head(axes_) = tie_.value.head(axes_) - n.head(axes_);
 }
 
 void Path::motion_system(const Chain& chain, const window::ViewBlock& view, double noise_factor, const State& n,
