@@ -142,6 +142,8 @@ void bind_options(nb::module_& m) {
             [](TrackerOptions& o, const std::string& name) { o.motion = motion::kind_named(name); })
         .def_rw("jerk_density_m_s25", &TrackerOptions::jerk_density_m_s25)
         .def_rw("correlation_time_s", &TrackerOptions::correlation_time_s)
+        .def_rw("correlation_angle_rad", &TrackerOptions::correlation_angle_rad)
+        .def_rw("correlation_log_range", &TrackerOptions::correlation_log_range)
         .def_rw("range_to_origin", &TrackerOptions::range_to_origin)
         .def_rw("seed", &TrackerOptions::seed);
 }

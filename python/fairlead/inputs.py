@@ -22,7 +22,7 @@ from fairlead.sources.source import Image, ImageFrame, ImageSource, ViewSource
 from fairlead.sources.table import SUFFIXES as TABLE_SUFFIXES
 from fairlead.sources.table import TableSource
 from fairlead.tracker import TrackerOptions
-from fairlead.types import Camera, Estimate, Target, View
+from fairlead.types import Camera, Correlation, Estimate, Target, View
 
 if TYPE_CHECKING:
     from fairlead.detect import Detector
@@ -67,9 +67,9 @@ class DetectedViews:
             start_s = time.perf_counter()
 
     @property
-    def correlation_time_s(self) -> float:
-        """How long the detector's errors stay alike [s]."""
-        return self._detector.correlation_time_s
+    def correlation(self) -> Correlation:
+        """How long the detector's errors stay."""
+        return self._detector.correlation
 
     def follow(self, estimate: Estimate) -> None:
         """Tell the detector where the estimator sees the target, before the next image is looked at."""
@@ -154,9 +154,16 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
 
 def told_correlation(source: ViewSource, options: TrackerOptions) -> TrackerOptions:
     """The options, with what the detector says of its errors where they say nothing."""
-    if options.correlation_time_s > 0.0 or not isinstance(source, DetectedViews):
+    said = options.correlation_time_s, options.correlation_angle_rad, options.correlation_log_range
+    if any(said) or not isinstance(source, DetectedViews):
         return options
-    return replace(options, correlation_time_s=source.correlation_time_s)
+    told = source.correlation
+    return replace(
+        options,
+        correlation_time_s=told.time_s,
+        correlation_angle_rad=told.angle_rad,
+        correlation_log_range=told.log_range,
+    )
 
 
 def follow(source: ViewSource, estimate: Estimate) -> None:

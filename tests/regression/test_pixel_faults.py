@@ -25,7 +25,7 @@ from fairlead.geometry import exp_se3
 from fairlead.inputs import DetectedViews
 from fairlead.io.poses import read_poses
 from fairlead.sources.source import ImageFrame
-from fairlead.types import Estimate, Target, View
+from fairlead.types import Correlation, Estimate, Target, View
 from fairlead.video import VideoWriter
 from tests.clip import CAMERA, DETECTOR, PERIOD_NS, Clip, draw, true_pose
 from tests.regression.test_pipeline import overlay_frames
@@ -60,7 +60,7 @@ class Images:
 class Remembering:
     """A detector that looks at each image once."""
 
-    correlation_time_s = 0.0
+    correlation = Correlation()
 
     def __init__(self, target: Target) -> None:
         self._detector: Detector = detector_from_spec(DETECTOR, target)

@@ -10,7 +10,7 @@ namespace fairlead::motion {
 namespace {
 
 constexpr double kAttitudeCaution = 10.0;  // times the told sigma, docs/motion.md section 2
-constexpr double kPositionFloor = 0.05;    // [rad] the same for the position in the target frame
+constexpr double kPositionFloor = 0.3;     // [rad] the same for the position in the target frame
 constexpr double kAttitudeFloor = 0.01;    // [rad]
 
 using Mat36 = Eigen::Matrix<double, 3, 6>;

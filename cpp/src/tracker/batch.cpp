@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "fairlead/tracker/sanitise.hpp"
+#include "fairlead/tracker/shares.hpp"
 
 namespace fairlead {
 namespace {
@@ -37,11 +38,13 @@ void Batch::add(const BatchView& view) {
 
 Refinement Batch::solve() {
     start_missing_views();
+    share_information();
     if (!problem_.views.empty()) graduate(widest_loss());
     for (int round = 0; round < kSecondLooks && !problem_.views.empty(); ++round) {
         const bool added = start_missing_views();
         const bool moved = take_second_look();
         if (!added && !moved) break;
+        share_information();
         graduate(1.0);
     }
     if (last_.ok && options_.motion != motion::Kind::none) start_path();
@@ -82,7 +85,6 @@ bool Batch::start_missing_views() {
         view.stamp_ns = candidate.stamp_ns;
         view.state.T_camera_target = start.poses.best.T_camera_target;
         view.ranges = candidate.ranges;
-        view.share = candidate.share;
         for (const Observation& o : candidate.observations)
             view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
         candidate.view = static_cast<int>(problem_.views.size());
@@ -90,6 +92,17 @@ bool Batch::start_missing_views() {
         added = true;
     }
     return added;
+}
+
+/// Of detections that err alike, docs/motion.md eq. (12).
+void Batch::share_information() {
+    Shares shares(options_);
+    for (const Candidate* candidate : in_time()) {
+        if (candidate->view < 0) continue;
+        window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate->view)];
+        view.share = shares.of(outlook(view.stamp_ns, view.state.T_camera_target, problem_.X));
+        shares.take();
+    }
 }
 
 /// How much wider than its own threshold the loss must begin, so that it takes in what the wrong model does to inliers

@@ -20,7 +20,6 @@ struct Candidate {
     std::int64_t stamp_ns = 0;
     std::vector<window::RangeMeasurement> ranges;
     std::optional<motion::Attitude> attitude;
-    double share = 1.0;  ///< of what an independent view would say
     int dropped = 0;
     int view = -1;
     int on_path = -1;  ///< its place on the path, where there is one

@@ -96,7 +96,6 @@ void Batch::add(const BatchReadings& readings) {
     range_bias_sigma_m_ = readings.range_bias_sigma_m;
     for (std::vector<Range>& ranges : by_landmark) add_ranges(std::move(ranges));
     add_attitudes(readings.attitudes);
-    share_information();
 }
 
 /// Those to one landmark.
@@ -122,20 +121,6 @@ void Batch::add_attitudes(std::span<const BatchReadings::Attitude> attitudes) {
         require_attitude(attitude);
         Candidate* view = nearest(views, stamp_ns, kMaxAttitudeAge);
         if (view != nullptr) view->attitude = attitude;
-    }
-}
-
-/// Of detections that err alike for a while, docs/motion.md eq. (12).
-void Batch::share_information() {
-    if (!(options_.correlation_time_s > 0.0)) return;
-    const Candidate* last = nullptr;
-    for (Candidate* view : in_time()) {
-        if (view->observations.empty()) continue;
-        if (last != nullptr) {
-            const double alike = std::exp(-seconds(view->stamp_ns - last->stamp_ns) / options_.correlation_time_s);
-            view->share = std::max(1e-6, (1.0 - alike) / (1.0 + alike));
-        }
-        last = view;
     }
 }
 

@@ -30,6 +30,10 @@ void validate(const TrackerOptions& options) {
             options.jerk_density_m_s25, "a positive number");
     require(options.correlation_time_s >= 0.0 && std::isfinite(options.correlation_time_s), "correlation_time_s",
             options.correlation_time_s, "zero or more seconds");
+    require(options.correlation_angle_rad >= 0.0 && std::isfinite(options.correlation_angle_rad),
+            "correlation_angle_rad", options.correlation_angle_rad, "zero or more");
+    require(options.correlation_log_range >= 0.0 && std::isfinite(options.correlation_log_range),
+            "correlation_log_range", options.correlation_log_range, "zero or more");
     require(options.ambiguity_log_odds >= 0.0, "ambiguity_log_odds", options.ambiguity_log_odds, "zero or more");
 }
 

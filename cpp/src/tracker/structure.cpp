@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace fairlead {
 namespace {
@@ -26,7 +27,7 @@ Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX&
     : workspace_(static_cast<int>(X0.size())),
       kind_(options.motion),
       jerk_density_(options.jerk_density_m_s25),
-      correlation_time_s_(options.correlation_time_s),
+      shares_(options),
       max_views_(static_cast<std::size_t>(options.max_views)) {
     validate(camera);
     problem_.camera = camera;
@@ -82,7 +83,6 @@ std::vector<Vec3> Structure::landmarks_told() const {
 }
 
 void Structure::interrupt() noexcept {
-    continued_ = false;
     if (path_) path_->restart();
 }
 
@@ -142,8 +142,8 @@ bool Structure::join_newest() noexcept {
     return newest_system(1.0);
 }
 
-/// The view as the solver wants it. Of detections that err alike for a while, a view next to the last one says little
-/// new: docs/motion.md eq. (12).
+/// The view as the solver wants it. Of detections that err alike, a view like those before it says little new:
+/// docs/motion.md eq. (12).
 ViewBlock Structure::make_view(std::int64_t stamp_ns, const SE3& T_start, std::span<const Observation> observations,
                                std::span<const window::RangeMeasurement> ranges) noexcept {
     ViewBlock view = std::move(pool_.back());
@@ -154,13 +154,7 @@ ViewBlock Structure::make_view(std::int64_t stamp_ns, const SE3& T_start, std::s
     for (const Observation& o : observations) view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
     view.ranges.assign(ranges.begin(),
                        ranges.begin() + std::min<std::ptrdiff_t>(std::ssize(ranges), ViewBlock::kMaxRanges));
-    view.share = 1.0;
-    if (correlation_time_s_ > 0.0 && continued_) {
-        const double alike = std::exp(-1e-9 * static_cast<double>(stamp_ns - last_ns_) / correlation_time_s_);
-        view.share = (1.0 - alike) / (1.0 + alike);
-    }
-    last_ns_ = stamp_ns;
-    continued_ = true;
+    view.share = shares_.of(outlook(stamp_ns, T_start, problem_.X));
     return view;
 }
 
@@ -182,6 +176,30 @@ void Structure::settle_on_path(double error) noexcept {
     if (stale_ || error > kNonlinearity) stale_ = !relinearise(error);
 }
 
+/// Where the newest view sees the target, and how well it is known, from what is linearised.
+void Structure::locate_newest(Fusion& fusion) noexcept {
+    const ViewBlock& newest = problem_.views.back();
+    fusion.T_camera_target = newest.state.T_camera_target;
+    fusion.covariance =
+        on_path_ ? path_->covariance(newest, problem_.noise_factor, Sigma_)
+                 : window::state_covariance(newest, problem_.X, Sigma_, problem_.noise_factor, Yt_, SigmaYt_);
+}
+
+/// A view errs as told, however much its errors are like those before: its pose is what the whole view says,
+/// docs/motion.md eq. (13). The model has learned of those errors already and is put back.
+bool Structure::locate_by_whole_view(Fusion& fusion) noexcept {
+    double& share = problem_.views.back().share;
+    const double told = std::exchange(share, 1.0);
+    const bool joined = join_newest();
+    if (joined) {
+        publish();
+        locate_newest(fusion);
+    }
+    share = told;
+    std::copy(workspace_.X_trial.begin(), workspace_.X_trial.end(), problem_.X.begin());
+    return joined;
+}
+
 Fusion Structure::fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<const Observation> observations,
                        std::span<const window::RangeMeasurement> ranges,
                        const std::optional<motion::Attitude>& attitude) noexcept {
@@ -190,20 +208,18 @@ Fusion Structure::fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<cons
     on_path_ = path_ && problem_.views.size() > kFewViews;
     if (on_path_) path_->advance(stamp_ns, problem_.X, attitude);
     std::copy(problem_.X.begin(), problem_.X.end(), workspace_.X_trial.begin());
-    const bool joined = join_newest();
+    const bool alike = problem_.views.back().share < 1.0;
+    const bool joined = (!alike || locate_by_whole_view(fusion)) && join_newest();
     const double error = joined ? nonlinearity() : 0.0;
     if (!joined || (!on_path_ && !settle_newest(error))) {
         std::copy(workspace_.X_trial.begin(), workspace_.X_trial.end(), problem_.X.begin());
         retire(problem_.views.size() - 1);
         return fusion;
     }
+    shares_.take();
     publish();
-    const ViewBlock& newest = problem_.views.back();
-    fusion.T_camera_target = newest.state.T_camera_target;
-    fusion.squares = newest.weighted_squares;
-    fusion.covariance =
-        on_path_ ? path_->covariance(newest, problem_.noise_factor, Sigma_)
-                 : window::state_covariance(newest, problem_.X, Sigma_, problem_.noise_factor, Yt_, SigmaYt_);
+    if (!alike) locate_newest(fusion);
+    fusion.squares = problem_.views.back().weighted_squares;
     const double log_det = workspace_.llt.matrixLLT().diagonal().array().log().sum();
     fusion.information_gained = std::max(0.0, log_det - log_det_);
     log_det_ = log_det;

@@ -22,9 +22,8 @@ void* take(std::size_t size) {
 }
 
 /// Allocations of operator new and of Eigen during updates after construction.
-int allocations_of_flight(int landmarks, int views, int max_views) {
+int allocations_of_flight(int landmarks, int views, int max_views, TrackerOptions options = {}) {
     const Scene scene = make_scene(landmarks, views, 1.5, 1.0, 1.0, 51);
-    TrackerOptions options;
     options.max_views = max_views;
     Tracker tracker(scene.camera, scene.X_told, independent_prior(scene, 1.0), options);
     allocations = 0;
@@ -51,4 +50,10 @@ void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 BOOST_AUTO_TEST_CASE(update_allocates_nothing) {
     BOOST_TEST(allocations_of_flight(20, 90, 16) == 0);
     BOOST_TEST(allocations_of_flight(100, 24, 8) == 0);
+    TrackerOptions alike;
+    alike.correlation_angle_rad = 0.2;
+    alike.correlation_log_range = 1.5;
+    BOOST_TEST(allocations_of_flight(20, 90, 16, alike) == 0);
+    alike.motion = motion::Kind::range;
+    BOOST_TEST(allocations_of_flight(20, 90, 16, alike) == 0);
 }

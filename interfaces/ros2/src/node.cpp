@@ -59,6 +59,10 @@ class TrackerNode : public rclcpp::Node {
             declare_parameter<std::string>("motion", fairlead::motion::to_string(options.motion)));
         options.jerk_density_m_s25 = declare_parameter<double>("jerk_density_m_s25", options.jerk_density_m_s25);
         options.correlation_time_s = declare_parameter<double>("correlation_time_s", options.correlation_time_s);
+        options.correlation_angle_rad =
+            declare_parameter<double>("correlation_angle_rad", options.correlation_angle_rad);
+        options.correlation_log_range =
+            declare_parameter<double>("correlation_log_range", options.correlation_log_range);
         options.range_to_origin = declare_parameter<bool>("range_to_origin", options.range_to_origin);
         options.seed = static_cast<std::uint64_t>(
             declare_parameter<std::int64_t>("seed", static_cast<std::int64_t>(options.seed)));

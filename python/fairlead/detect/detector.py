@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 from fairlead.detect.fiducial import BoardDetector, CharucoBoard, Chessboard, TagDetector
 from fairlead.io.shipped import shipped_network
 from fairlead.opencv import Image
-from fairlead.types import Camera, Estimate, Target, View
+from fairlead.types import Camera, Correlation, Estimate, Target, View
 
 FORMS = "network.onnx, frigate, aruco:DICT_4X4_100, apriltag:36h11, charuco:7x5:DICT_5X5_100[:0.75], chessboard:9x6"
 NETWORK_SUFFIX = ".onnx"
@@ -19,8 +19,8 @@ class Detector(Protocol):
     """Finds the landmarks of a target in an image."""
 
     @property
-    def correlation_time_s(self) -> float:
-        """How long its errors stay alike from image to image, docs/motion.md eq. (12) [s]."""
+    def correlation(self) -> Correlation:
+        """How long its errors stay."""
         ...
 
     def detect(self, image: Image, frame: int, stamp_ns: int) -> View:

@@ -10,7 +10,7 @@ import numpy as np
 from fairlead import opencv
 from fairlead.detect.edges import measure_tags
 from fairlead.detect.saddles import measure_saddles
-from fairlead.types import Estimate, Target, View
+from fairlead.types import Correlation, Estimate, Target, View
 
 CORNERS = ("tl", "tr", "br", "bl")
 """Corners of a tag in OpenCV's order, clockwise as the upright tag is seen."""
@@ -25,7 +25,7 @@ class TagDetector:
     Raises ValueError for an unknown family, or a target without such landmarks.
     """
 
-    correlation_time_s = 0.0
+    correlation = Correlation()
     """Corners are measured anew in every image."""
 
     def __init__(self, family: str, target: Target | None = None) -> None:
@@ -106,7 +106,7 @@ class BoardDetector:
     Raises ValueError for a target without such landmarks.
     """
 
-    correlation_time_s = 0.0
+    correlation = Correlation()
     """Corners are measured anew in every image."""
 
     def __init__(self, board: CharucoBoard | Chessboard, target: Target | None = None) -> None:

@@ -13,7 +13,7 @@ from fairlead.detect.roi import Follower
 from fairlead.detect.window import window_about
 from fairlead.io.errors import InputError
 from fairlead.opencv import Image
-from fairlead.types import Camera, Estimate, Target, View
+from fairlead.types import Camera, Correlation, Estimate, Target, View
 
 FOLLOW_LANDMARKS = 4
 FOLLOW_SCORE = 0.25
@@ -40,9 +40,9 @@ class NetworkDetector:
         """How often the whole image was searched."""
 
     @property
-    def correlation_time_s(self) -> float:
+    def correlation(self) -> Correlation:
         """As its card says: neighbouring images show the same pixels of the same target."""
-        return self.network.card.calibration.correlation_time_s
+        return self.network.card.calibration.correlation
 
     def detect(self, image: Image, frame: int, stamp_ns: int) -> View:
         """The landmarks that are seen; an empty view where the target is not found."""

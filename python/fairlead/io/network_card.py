@@ -7,16 +7,18 @@ It travels as JSON in the metadata of the .onnx file, or as TOML beside a file t
 
 import dataclasses
 import json
-from collections.abc import Collection, Mapping
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, cast, get_args
 
 import numpy as np
 
+from fairlead.io.card_fields import each, number, texts, three, whole
 from fairlead.io.documents import read_toml
 from fairlead.io.errors import InputError
 from fairlead.io.fields import Fields
+from fairlead.types import Correlation
 
 FORMAT = 1
 METADATA_KEY = "fairlead_card"
@@ -92,8 +94,18 @@ class Calibration:
     """simcc, heatmap: standard deviation of each coordinate, one or one a landmark [px of the crop]."""
     spread_factor: float = 0.0
     """simcc, heatmap: what is added of the peak's own covariance [-]."""
-    correlation_time_s: float = 8.0
-    """Errors of two images this far apart in time are e times less alike, docs/motion.md eq. (12) [s]."""
+    correlation_time_s: float = 0.0
+    """Errors of two images this far apart in time are e times less alike, docs/motion.md eq. (12) [s]; 0: no matter."""
+    correlation_angle_deg: float = 12.0
+    """The same by the turn of the line of sight in the target frame [deg]."""
+    correlation_log_range: float = 1.5
+    """The same by the logarithm of the range [-]."""
+
+    @property
+    def correlation(self) -> Correlation:
+        """How long errors stay, as estimators take it."""
+        angle_rad = math.radians(self.correlation_angle_deg)
+        return Correlation(time_s=self.correlation_time_s, angle_rad=angle_rad, log_range=self.correlation_log_range)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,7 +175,7 @@ def _card(document: object, path: Path, where: str) -> NetworkCard:
     top = Fields(document, known, path, where)
     if top.integer("format") != FORMAT:
         raise top.error("format", f"expected {FORMAT}, got {top.integer('format')}")
-    landmarks = _texts(top, "landmarks")
+    landmarks = texts(top, "landmarks")
     if not 0 < len(landmarks) <= MAX_LANDMARKS or len(set(landmarks)) != len(landmarks):
         raise top.error("landmarks", f"expected 1 to {MAX_LANDMARKS} different names, got {len(landmarks)}")
     decoding = _decoding(_table(top, "decoding", Decoding, path, where))
@@ -187,11 +199,11 @@ def _table(top: Fields, key: str, record: type[Any], path: Path, where: str) -> 
 
 def _input(fields: Fields) -> NetworkInput:
     default = NetworkInput(name="input", width=1, height=1)
-    width, height = (_whole(fields, key, 8, MAX_SIDE_PX) for key in ("width", "height"))
+    width, height = (whole(fields, key, 8, MAX_SIDE_PX) for key in ("width", "height"))
     any_size = fields.get("any_size") if "any_size" in fields else False
     if not isinstance(any_size, bool):
         raise fields.error("any_size", f"expected true or false, got {any_size!r}")
-    std = _three(fields, "std", default.std)
+    std = three(fields, "std", default.std)
     if min(std) <= 0.0:
         raise fields.error("std", f"expected numbers above 0, got {list(std)}")
     return NetworkInput(
@@ -199,9 +211,9 @@ def _input(fields: Fields) -> NetworkInput:
         width=width,
         height=height,
         color=cast(Color, fields.choice("color", get_args(Color))) if "color" in fields else default.color,
-        mean=_three(fields, "mean", default.mean),
+        mean=three(fields, "mean", default.mean),
         std=std,
-        pad=_number(fields, "pad", default.pad, 1.0, 4.0),
+        pad=number(fields, "pad", default.pad, 1.0, 4.0),
         any_size=any_size,
     )
 
@@ -209,82 +221,56 @@ def _input(fields: Fields) -> NetworkInput:
 def _decoding(fields: Fields) -> Decoding:
     default = Decoding()
     kind = cast(Kind, fields.choice("kind", get_args(Kind))) if "kind" in fields else default.kind
-    outputs = _texts(fields, "outputs") if "outputs" in fields else ()
+    outputs = texts(fields, "outputs") if "outputs" in fields else ()
     count = max(1, len(OUTPUTS[kind]))
     if outputs and len(outputs) != count:
         raise fields.error("outputs", f"expected {count} names for kind {kind}, got {len(outputs)}")
     return Decoding(
         kind=kind,
         outputs=outputs,
-        bins_per_px=_number(fields, "bins_per_px", default.bins_per_px, 0.1, 32.0),
-        stride=_number(fields, "stride", default.stride, 0.5, 64.0),
-        origin_px=_number(fields, "origin_px", default.origin_px, -64.0, 64.0),
-        beta=_number(fields, "beta", default.beta, 0.0, 1000.0),
-        window=_number(fields, "window", default.window, 1.0, 256.0),
-        blur=_number(fields, "blur", default.blur, 0.0, 16.0),
+        bins_per_px=number(fields, "bins_per_px", default.bins_per_px, 0.1, 32.0),
+        stride=number(fields, "stride", default.stride, 0.5, 64.0),
+        origin_px=number(fields, "origin_px", default.origin_px, -64.0, 64.0),
+        beta=number(fields, "beta", default.beta, 0.0, 1000.0),
+        window=number(fields, "window", default.window, 1.0, 256.0),
+        blur=number(fields, "blur", default.blur, 0.0, 16.0),
     )
 
 
 def _calibration(fields: Fields, landmarks: int, kind: Kind) -> Calibration:
     default = Calibration()
-    sigma = _each(fields, "sigma_px", landmarks, 1e-3) if "sigma_px" in fields else ()
+    sigma = each(fields, "sigma_px", landmarks, 1e-3) if "sigma_px" in fields else ()
     if kind != "pixels" and not sigma:
         raise fields.error("sigma_px", f"missing: a network of kind {kind} gives no covariance, so the card must")
-    scale = _each(fields, "scale", landmarks, 1e-6) if "scale" in fields else default.scale
+    scale = each(fields, "scale", landmarks, 1e-6) if "scale" in fields else default.scale
     return Calibration(
-        visible_threshold=_number(fields, "visible_threshold", default.visible_threshold, -1e6, 1e6),
+        visible_threshold=number(fields, "visible_threshold", default.visible_threshold, -1e6, 1e6),
         scale=scale,
-        floor_px=_number(fields, "floor_px", default.floor_px, 0.0, 1e3),
-        tail_dof=_number(fields, "tail_dof", 0.0, 0.1, 1e6) if "tail_dof" in fields else None,
+        floor_px=number(fields, "floor_px", default.floor_px, 0.0, 1e3),
+        tail_dof=number(fields, "tail_dof", 0.0, 0.1, 1e6) if "tail_dof" in fields else None,
         sigma_px=sigma,
-        spread_factor=_number(fields, "spread_factor", default.spread_factor, 0.0, 1e3),
-        correlation_time_s=_number(fields, "correlation_time_s", default.correlation_time_s, 0.0, 1e4),
+        spread_factor=number(fields, "spread_factor", default.spread_factor, 0.0, 1e3),
+        **_correlation(fields),
     )
+
+
+def _correlation(fields: Fields) -> dict[str, float]:
+    """What is said of how long errors stay; a card that says anything of it says all."""
+    default = Calibration()
+    limits = {"correlation_time_s": 1e4, "correlation_angle_deg": 180.0, "correlation_log_range": 1e2}
+    silent = not any(key in fields for key in limits)
+    return {
+        key: number(fields, key, getattr(default, key) if silent else 0.0, 0.0, most) for key, most in limits.items()
+    }
 
 
 def _acquisition(fields: Fields) -> Acquisition:
     default = Acquisition()
     return Acquisition(
-        levels=_whole(fields, "levels", 1, 6) if "levels" in fields else default.levels,
-        visible_threshold=_number(fields, "visible_threshold", default.visible_threshold, -1e6, 1e6),
-        min_landmarks=_whole(fields, "min_landmarks", 4, MAX_LANDMARKS)
+        levels=whole(fields, "levels", 1, 6) if "levels" in fields else default.levels,
+        visible_threshold=number(fields, "visible_threshold", default.visible_threshold, -1e6, 1e6),
+        min_landmarks=whole(fields, "min_landmarks", 4, MAX_LANDMARKS)
         if "min_landmarks" in fields
         else default.min_landmarks,
-        min_score=_number(fields, "min_score", default.min_score, 0.0, 1.0),
+        min_score=number(fields, "min_score", default.min_score, 0.0, 1.0),
     )
-
-
-def _texts(fields: Fields, key: str) -> tuple[str, ...]:
-    items = fields.items(key)
-    if not all(isinstance(item, str) and item for item in items):
-        raise fields.error(key, "expected a list of names")
-    return tuple(cast(list[str], items))
-
-
-def _number(fields: Fields, key: str, default: float, low: float, high: float) -> float:
-    if key not in fields:
-        return default
-    value = fields.number(key)
-    if not low <= value <= high:
-        raise fields.error(key, f"expected {low:g} to {high:g}, got {value:g}")
-    return value
-
-
-def _whole(fields: Fields, key: str, low: int, high: int) -> int:
-    value = fields.integer(key)
-    if not low <= value <= high:
-        raise fields.error(key, f"expected a whole number from {low} to {high}, got {value}")
-    return value
-
-
-def _three(fields: Fields, key: str, default: tuple[float, ...]) -> tuple[float, ...]:
-    return tuple(fields.numbers(key, 3)) if key in fields else default
-
-
-def _each(fields: Fields, key: str, landmarks: int, least: float) -> tuple[float, ...]:
-    """One number, or one a landmark."""
-    single = not isinstance(fields.get(key), Collection) or isinstance(fields.get(key), str | Mapping)
-    values = [fields.number(key)] if single else fields.numbers(key)
-    if len(values) not in (1, landmarks) or min(values, default=0.0) < least:
-        raise fields.error(key, f"expected one number or {landmarks}, none below {least:g}, got {len(values)}")
-    return tuple(values)

@@ -121,7 +121,7 @@ def detect(scenario: Scenario, true: Target, turns: Times, T_camera_target: Pose
     missed = scenario.dropout.missed(turns, len(X), streams)
     found = found if missed is None else found & ~missed
     sigmas = _sigmas(scenario, true, centres)
-    pixels = pixels_true + scenario.noise.draw(turns, sigmas, streams)
+    pixels = pixels_true + scenario.noise.draw(turns, centres - true.positions.mean(axis=0), sigmas, streams)
     pixels = scenario.outliers.spoil(pixels, turns, scenario.camera, streams)
     told_sigmas = scenario.noise.told_sigmas(sigmas)
     order = scenario.swaps.order(true, pixels_true, turns, streams)

@@ -40,6 +40,10 @@ class TrackerOptions:
     """Root of the power spectral density of its jerk [m/s^2.5], as a first guess: the data judge it."""
     correlation_time_s: float = _D.correlation_time_s
     """Time over which detections err alike [s]: neighbouring views then say little new, docs/motion.md eq. (12)."""
+    correlation_angle_rad: float = _D.correlation_angle_rad
+    """The same by the turn of the line of sight in the target frame [rad]; 0: it makes no difference."""
+    correlation_log_range: float = _D.correlation_log_range
+    """The same by the logarithm of the range [-]; 0: it makes no difference."""
     range_to_origin: bool = _D.range_to_origin
     """Whether readings of the range to the target's origin will come, docs/range.md."""
     seed: int = _D.seed

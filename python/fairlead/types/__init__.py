@@ -31,6 +31,9 @@ from fairlead.types.checks import (
     is_covariance,
     is_rigid,
 )
+from fairlead.types.correlation import (
+    Correlation,
+)
 from fairlead.types.models import (
     Camera,
     KnownDistance,
@@ -55,6 +58,7 @@ __all__ = [
     "AttitudeReading",
     "Camera",
     "CameraModel",
+    "Correlation",
     "Distortion",
     "Estimate",
     "KnownDistance",

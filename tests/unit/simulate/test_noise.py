@@ -14,7 +14,8 @@ TURNS = np.arange(K) / 25.0
 
 def draw(noise: Noise, seed: int = 1, turns=TURNS, n: int = N) -> np.ndarray:
     """Errors (k, n, 2) where all sigmas are sigma_px."""
-    return noise.draw(turns, np.full((len(turns), n), noise.sigma_px), Streams(seed))
+    away = np.tile([1000.0, 0.0, 0.0], (len(turns), 1))
+    return noise.draw(turns, away, np.full((len(turns), n), noise.sigma_px), Streams(seed))
 
 
 @given(st.floats(0.05, 1.0), st.floats(0.2, 5.0), st.integers(0, 1000))
@@ -51,6 +52,33 @@ def test_the_time_between_images_counts():
     e = draw(Noise(correlation_time_s=0.5), turns=turns, n=40_000)
     alike = [np.mean(e[k] * e[k + 1]) for k in range(3)]
     np.testing.assert_allclose(alike, np.exp(-np.diff(turns) / 0.5), atol=5 / np.sqrt(80_000))
+
+
+def test_errors_stay_while_the_view_stays():
+    """exp(-chord / 12 deg - |log range ratio| / 0.5) whatever the time between; 8000 fields of variance 1.
+
+    The correlation of one draw of 256 waves scatters by 1 / sqrt(512): 5 of these.
+    """
+    angles = np.radians([0.0, 0.0, 6.0, 24.0, 0.0])
+    ranges = np.array([1000.0, 1000.0, 1000.0, 1000.0, 500.0])
+    away = ranges[:, None] * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    noise = Noise(correlation_angle_deg=12.0, correlation_log_range=0.5)
+    e = noise.draw(np.arange(5.0), away, np.ones((5, 4000)), Streams(1))
+    chord = 2 * np.sin(angles / 2)
+    alike = np.exp(-chord / np.radians(12.0) - np.log(1000.0 / ranges) / 0.5)
+    found = [float(np.mean(e[0] * e[k])) for k in range(5)]
+    np.testing.assert_allclose(found, alike, atol=5 / np.sqrt(512))
+    assert found[0] == pytest.approx(1.0, abs=5 * np.sqrt(2 / 8000))
+    np.testing.assert_array_equal(e[0], e[1])
+
+
+def test_errors_stay_in_time_too():
+    """Times exp(-dt / tau) where both are told."""
+    away = np.tile([1000.0, 0.0, 0.0], (3, 1))
+    noise = Noise(correlation_angle_deg=12.0, correlation_time_s=2.0)
+    e = noise.draw(np.array([0.0, 1.0, 6.0]), away, np.ones((3, 4000)), Streams(2))
+    found = [float(np.mean(e[0] * e[k])) for k in range(3)]
+    np.testing.assert_allclose(found, np.exp([0.0, -0.5, -3.0]), atol=5 / np.sqrt(512))
 
 
 def test_heavy_tails_keep_the_variance_and_both_coordinates_suffer():

@@ -25,9 +25,11 @@ struct TrackerOptions {
     double ambiguity_log_odds = 4.5;           ///< [nats] two poses closer than this are both kept
     motion::Kind motion = motion::Kind::none;  ///< what is smooth, docs/motion.md
     double jerk_density_m_s25 = 0.5;           ///< [m/s^2.5] of its white jerk; told, then judged by the data
-    double correlation_time_s = 0.0;  ///< [s] over which detections err alike, so that many views say what one does
-    bool range_to_origin = false;     ///< readings of the range to the target's origin will come
-    std::uint64_t seed = 0;           ///< of the consensus search
+    double correlation_time_s = 0.0;     ///< [s] over which detections err alike, so that many views say what one does
+    double correlation_angle_rad = 0.0;  ///< [rad] the same by the turn of the line of sight in the target frame
+    double correlation_log_range = 0.0;  ///< [-] the same by the logarithm of the range; 0 of each: makes no difference
+    bool range_to_origin = false;        ///< readings of the range to the target's origin will come
+    std::uint64_t seed = 0;              ///< of the consensus search
 };
 
 /// Throws std::invalid_argument naming the option, what came and what was expected.

@@ -7,6 +7,7 @@
 
 #include "fairlead/motion/path.hpp"
 #include "fairlead/tracker/options.hpp"
+#include "fairlead/tracker/shares.hpp"
 #include "fairlead/window/covariance.hpp"
 #include "fairlead/window/levenberg_marquardt.hpp"
 
@@ -62,6 +63,8 @@ class Structure {
                                               std::span<const window::RangeMeasurement> ranges) noexcept;
     [[nodiscard]] bool settle_newest(double error) noexcept;
     void settle_on_path(double error) noexcept;
+    void locate_newest(Fusion& fusion) noexcept;
+    bool locate_by_whole_view(Fusion& fusion) noexcept;
     bool join_newest() noexcept;
     bool newest_system(double mu) noexcept;
     bool relinearise(double error) noexcept;
@@ -80,13 +83,12 @@ class Structure {
     std::vector<Eigen::Vector4d> descriptors_;
     double radius_ = 1.0;
     motion::Kind kind_;
-    double jerk_density_, correlation_time_s_;
+    double jerk_density_;
+    Shares shares_;
     std::optional<motion::Path> path_;
     window::Gauge path_gauge_ = window::Gauge::similarity;
     bool stale_ = false;    ///< the window must be linearised anew
     bool on_path_ = false;  ///< whether the newest view is
-    std::int64_t last_ns_ = 0;
-    bool continued_ = false;
 
     // The quadratic of all but the newest view, told units, gradient at X_data_; its views were linearised at
     // X_window_.
