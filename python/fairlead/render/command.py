@@ -66,37 +66,29 @@ def render(
 ) -> int:
     """Render crops, a named flight, or the poses of a truth.csv, or write the mesh of a bundle of tags.
 
-    Returns how many pictures were made.
-
-    Raises RenderError (what this machine or this target cannot do) or InputError, one line each.
+    Returns how many pictures were made. Raises RenderError (what this machine or this target cannot do) or
+    InputError, one line each.
     """
     folder = shipped_data("frigate") if target is None else target.parent
     model = load_target(folder / "target.toml" if target is None else target)
     if sequence == TAGS:
         _write_tags(model, output, dictionary, quiet, handle)
         return 0
+    if surroundings == "room" and (sequence != CROPS or quality == "full"):
+        raise RenderError(
+            "--surroundings room: there are crops of draft quality, no flights and nothing at full quality"
+        )
     lens = load_camera(folder / "camera.yaml" if camera is None else camera)
     if sequence == CROPS:
         from fairlead.render.crops import CropJob, render_crops
 
         crops = CropJob(
-            target=model,
-            camera=lens,
-            folder=output,
-            count=count,
-            empty_share=empty,
-            envelope=envelope_of(model, surroundings, up),
-            size=size,
-            seed=seed,
-            surroundings=surroundings,
-            quality=quality or "draft",
-            samples=samples,
-            threads=threads,
-        )
+            target=model, camera=lens, folder=output, count=count, empty_share=empty,
+            envelope=envelope_of(model, surroundings, up), size=size, seed=seed, surroundings=surroundings,
+            quality=quality or "draft", samples=samples, threads=threads,
+        )  # fmt: skip
         return render_crops(crops, jobs=jobs, progress=progress)
     check_pinhole(lens)
-    if surroundings == "room":
-        raise RenderError("--surroundings room: there are crops of it, no flights")
     flown = _placed(sequence, model, stride, Swell() if swell else None, surroundings)
     setting = Setting(surroundings=surroundings, sun_elevation_deg=sun_elevation_deg, wind_m_s=wind_m_s)
     job = Job(

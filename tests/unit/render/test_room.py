@@ -92,5 +92,6 @@ def test_there_are_no_flights_through_rooms(
     repository: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     target = str(repository / "data" / "frigate" / "target.toml")
-    assert main(["render", "landing", "--target", target, "--surroundings", "room", "-o", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+    for what in (["landing"], ["crops", "--quality", "full"]):
+        assert main(["render", *what, "--target", target, "--surroundings", "room", "-o", str(tmp_path)]) == 2
+        assert capsys.readouterr().err.count("\n") == 1
