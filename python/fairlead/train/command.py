@@ -84,14 +84,17 @@ def export(
     *,
     calibration: Path | None = None,
     target: str = "",
+    min_score: float = 0.5,
     progress: ProgressFactory = silent,
 ) -> list[str]:
     """Write the .onnx file; returns lines for people. Raises InputError, TrainingError."""
     del progress
+    if not 0.0 <= min_score <= 1.0:
+        raise TrainingError(f"export: expected --min-score from 0 to 1, got {min_score:g}")
     _needs_torch()
     from fairlead.train.export import export_network
 
-    digest = export_network(checkpoint, output, calibration=calibration, target=target)
+    digest = export_network(checkpoint, output, calibration=calibration, target=target, min_score=min_score)
     return [f"{output}: {output.stat().st_size / 1e6:.1f} MB, sha256 {digest}"]
 
 

@@ -77,6 +77,8 @@ class ExportConfig:
     """calibration.toml of `fairlead calibrate`; without it covariances are as the network says."""
     target: str = ""
     """Name of the target, for the card."""
+    min_score: float = 0.5
+    """What acquisition asks for before it believes, 0 to 1: higher mistakes fewer other things for the target [-]."""
 
 
 NetworkConfig = TrainConfig | CalibrateConfig | ExportConfig

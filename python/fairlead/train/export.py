@@ -27,8 +27,6 @@ from fairlead.train.lesson import Lesson
 OPSET = 17
 INPUT = "image"
 OUTPUTS = ("pixels", "cholesky", "visible")
-ACQUISITION = Acquisition(min_score=0.6)
-"""These networks say how surely the target is there, so that the share that must be seen can be asked for in full."""
 FREE = {0: "batch", 2: "height", 3: "width"}
 
 
@@ -45,7 +43,9 @@ class _Outputs(nn.Module):
         return found.pixels, found.cholesky, found.visible
 
 
-def export_network(checkpoint: Path, output: Path, *, calibration: Path | None = None, target: str = "") -> str:
+def export_network(
+    checkpoint: Path, output: Path, *, calibration: Path | None = None, target: str = "", min_score: float = 0.5
+) -> str:
     """Write the .onnx file, whole or not at all, and its .sha256; returns the sha256. Raises InputError."""
     lesson = load_lesson(checkpoint)
     found = Calibration() if calibration is None else read_calibration(calibration, len(lesson.landmarks))
@@ -53,7 +53,7 @@ def export_network(checkpoint: Path, output: Path, *, calibration: Path | None =
     part = output.with_name(f".{output.name}.part")
     write_onnx(lesson, part)
     model = onnx.load(part)
-    onnx.helper.set_model_props(model, {METADATA_KEY: card_json(_card(lesson, output.stem, found, target))})
+    onnx.helper.set_model_props(model, {METADATA_KEY: card_json(_card(lesson, output.stem, found, target, min_score))})
     onnx.checker.check_model(model)
     onnx.save(model, part)
     digest = hashlib.sha256(part.read_bytes()).hexdigest()
@@ -77,7 +77,7 @@ def write_onnx(lesson: Lesson, path: Path) -> None:
         )  # fmt: skip
 
 
-def _card(lesson: Lesson, name: str, calibration: Calibration, target: str) -> NetworkCard:
+def _card(lesson: Lesson, name: str, calibration: Calibration, target: str, min_score: float) -> NetworkCard:
     return NetworkCard(
         name=name,
         network=lesson.name,
@@ -94,5 +94,5 @@ def _card(lesson: Lesson, name: str, calibration: Calibration, target: str) -> N
         ),
         decoding=Decoding(kind="pixels"),
         calibration=calibration,
-        acquisition=ACQUISITION,
+        acquisition=Acquisition(min_score=min_score),
     )
