@@ -10,7 +10,15 @@ import onnx
 import torch
 from torch import Tensor, nn
 
-from fairlead.io.network_card import METADATA_KEY, Calibration, Decoding, NetworkCard, NetworkInput, card_json
+from fairlead.io.network_card import (
+    METADATA_KEY,
+    Acquisition,
+    Calibration,
+    Decoding,
+    NetworkCard,
+    NetworkInput,
+    card_json,
+)
 from fairlead.train.calibrate import read_calibration
 from fairlead.train.checkpoint import load_lesson
 from fairlead.train.crops import MEAN, SCALE
@@ -19,6 +27,8 @@ from fairlead.train.lesson import Lesson
 OPSET = 17
 INPUT = "image"
 OUTPUTS = ("pixels", "cholesky", "visible")
+ACQUISITION = Acquisition(min_score=0.6)
+"""These networks say how surely the target is there, so that the share that must be seen can be asked for in full."""
 FREE = {0: "batch", 2: "height", 3: "width"}
 
 
@@ -84,4 +94,5 @@ def _card(lesson: Lesson, name: str, calibration: Calibration, target: str) -> N
         ),
         decoding=Decoding(kind="pixels"),
         calibration=calibration,
+        acquisition=ACQUISITION,
     )
