@@ -161,7 +161,7 @@ def _limit(observed: Observed) -> float:
 
 
 def correlation_time_s(observed: Observed, inefficiency: float) -> float:
-    """The time that makes a frame count for 1/c of an independent one, docs/motion.md eq. (12) solved for it [s]."""
+    """The time that makes a frame count for 1/c of an independent one, docs/reproduce.md eq. (3) [s]."""
     interval_s = 1e-9 * float(np.median(np.diff(observed.stamps_ns))) if len(observed.stamps_ns) > 1 else 0.0
     if inefficiency <= 1.0 or interval_s <= 0.0:
         return 0.0
