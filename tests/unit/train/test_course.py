@@ -57,7 +57,8 @@ def test_settling_changes_covariance_and_visibility_alone(trained: Path) -> None
 @pytest.fixture(scope="module")
 def exported(trained: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("export") / "spots.onnx"
-    assert main(["export", str(trained / "settled.ckpt"), "--target", "spots", "-o", str(path)]) == 0
+    checkpoint = str(trained / "settled.ckpt")
+    assert main(["export", checkpoint, "--target", "spots", "--min-score", "0.7", "-o", str(path)]) == 0
     return path
 
 
@@ -66,6 +67,7 @@ def test_the_file_says_what_it_is(exported: Path) -> None:
     assert (digest, name) == (hashlib.sha256(exported.read_bytes()).hexdigest(), "spots.onnx")
     card = Network(exported).card
     assert (card.network, card.target, card.landmarks) == ("heat-t", "spots", NAMES)
+    assert card.acquisition.min_score == 0.7
     assert (card.input.color, card.input.width, card.input.height, card.input.any_size) == ("BGR", 128, 128, True)
 
 
@@ -172,6 +174,7 @@ def test_the_rate_rises_stays_and_falls() -> None:
         (["train", "--data", "{spots}", "--start", "{torn}", "-o", "{out}"], "expected an .onnx file"),
         (["train", "--data", "{spots}", "--start", "{bare}", "-o", "{out}"], "one without its card"),
         (["export", "{broken}", "-o", "{out}/a.onnx"], "expected a checkpoint"),
+        (["export", "{broken}", "--min-score", "1.2", "-o", "{out}/a.onnx"], "--min-score from 0 to 1, got 1.2"),
         (["calibrate", "{broken}", "--data", "{spots}", "-o", "{out}"], "expected a checkpoint"),
     ],
 )
