@@ -125,7 +125,8 @@ void Chain::absorb(const MatX& A, const Eigen::Ref<const MatX>& B, const StateSq
 
 void Chain::marginal(MatX& Lambda, VecX& eta) noexcept {
     const Eigen::LLT<StateSquare> llt(nn_);
-    wide_ = llt.matrixL().solve(yn_.transpose()).transpose();
+    wide_ = yn_;
+    llt.matrixU().solveInPlace<Eigen::OnTheRight>(wide_);
     Lambda = yy_;
     Lambda.noalias() -= wide_ * wide_.transpose();
     eta = eta_y_;

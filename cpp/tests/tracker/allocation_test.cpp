@@ -54,6 +54,4 @@ BOOST_AUTO_TEST_CASE(update_allocates_nothing) {
     alike.correlation_angle_rad = 0.2;
     alike.correlation_log_range = 1.5;
     BOOST_TEST(allocations_of_flight(20, 90, 16, alike) == 0);
-    alike.motion = motion::Kind::range;
-    BOOST_TEST(allocations_of_flight(20, 90, 16, alike) == 0);
 }
