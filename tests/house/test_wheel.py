@@ -46,7 +46,7 @@ def test_the_wheel_holds_what_the_package_needs_and_nothing_else(wheel: Path) ->
     assert any(name.startswith("fairlead/_core.") and name.endswith(".so") for name in names)
     assert any(name.startswith("fairlead/evaluate/templates/") for name in names)
     assert {name.split("/")[0] for name in names} == {"fairlead", f"{wheel.name.split('-cp')[0]}.dist-info"}
-    assert wheel.stat().st_size < 20_000_000  # most of it the clip of the demo, and a network
+    assert wheel.stat().st_size < 40_000_000  # most of it the clip of the demo, and two networks
 
 
 @pytest.mark.slow
