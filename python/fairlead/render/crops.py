@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jaxtyping import UInt8
 
 from fairlead import geometry
 from fairlead.io.coco import LabelledImage, label_json, write_coco
@@ -273,7 +274,7 @@ def _moved(target: Target, scene: CropScene) -> Target:
     return Target(name=target.name, landmarks=target.landmarks, positions=scene.X, covariance=zero)
 
 
-def _enlarged(picture: Picture, size: int) -> Picture:
+def _enlarged(picture: Picture, size: int) -> UInt8[np.ndarray, "size size 3"]:
     """As the tracker enlarges what its camera shows in few pixels."""
     if len(picture) == size:
         return picture

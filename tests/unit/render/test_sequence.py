@@ -264,11 +264,17 @@ def test_crops_without_the_target_label_nothing(graphics: None, repository: Path
         assert np.abs(there - gone).max() > 20.0
 
 
+def without_mesh(target: Path, path: Path) -> Path:
+    lines = [line for line in target.read_text().splitlines() if not line.startswith("mesh")]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["nonsense"], "expected orbit-2.0"),
-        (["crops", "--target", "{pen}"], "names no mesh"),
+        (["crops", "--target", "{bare}"], "names no mesh"),
         (["nowhere/truth.csv"], "nowhere/truth.csv"),
         (["landing", "--target", "{frigate}", "--first", "900"], "the last frame is 810"),
     ],
@@ -276,9 +282,9 @@ def test_crops_without_the_target_label_nothing(graphics: None, repository: Path
 def test_what_cannot_be_rendered_is_one_line_and_2(
     arguments: list[str], message: str, repository: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    pen = str(repository / "data" / "marker_pen" / "target.toml")
     frigate = str(repository / "data" / "frigate" / "target.toml")
-    told = [{"{pen}": pen, "{frigate}": frigate}.get(a, a) for a in arguments]
+    bare = str(without_mesh(Path(frigate), tmp_path / "bare.toml"))
+    told = [{"{bare}": bare, "{frigate}": frigate}.get(a, a) for a in arguments]
     camera = ["--camera", str(repository / "data" / "frigate" / "camera.yaml")]
     assert main(["render", *told, *camera, "-o", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err

@@ -158,8 +158,10 @@ def test_files_that_are_not_there(tmp_path, head, message):
     assert message in str(caught.value)
 
 
-def test_a_surface_that_is_not_there(tmp_path):
-    (tmp_path / "s.toml").write_text('target = "marker_pen"\ncamera = "frigate"\n[occlusion]\nkind = "mesh"\n')
+def test_a_surface_that_is_not_there(tmp_path, repository):
+    lines = (repository / "data" / "frigate" / "target.toml").read_text().splitlines()
+    (tmp_path / "bare.toml").write_text("\n".join(line for line in lines if not line.startswith("mesh")))
+    (tmp_path / "s.toml").write_text('target = "bare.toml"\ncamera = "frigate"\n[occlusion]\nkind = "mesh"\n')
     with pytest.raises(InputError, match=r"s.toml: occlusion.kind: expected a mesh in the target \S+, got none"):
         load_scenario(tmp_path / "s.toml")
 
