@@ -218,18 +218,17 @@ class CropMaker:
         if rng.random() >= self._job.empty_share:
             return shot
         T_camera_place, T_world_place, others = shot.T_camera_target, shot.T_world_target, list(shot.others)
-        away = behind_camera(T_camera_place, T_world_place)
-        wake = T_world_place @ away
+        wake = None
         other = self._stage.stand_in(rng)
         if other is not None:
             if rng.random() < 0.5:
                 model = self._stage.model
                 T_camera_place = T_camera_place.copy()
                 T_camera_place[:3, 3] *= (other.high[0] - other.low[0]) / (model.high[0] - model.low[0])
-                away = behind_camera(T_camera_place, T_world_place)
             turn = geometry.exp_se3(np.array([0.0, 0.0, 0.0, 0.0, 0.0, rng.uniform(0.0, 2.0 * np.pi)]))
             others.append((other, T_world_place @ turn))
-            wake = T_world_place @ turn if rng.random() < 0.7 else T_world_place @ away
+            wake = T_world_place @ turn if rng.random() < 0.7 else None
+        away = behind_camera(T_camera_place, T_world_place)
         return replace(
             shot,
             T_camera_target=T_camera_place @ away,

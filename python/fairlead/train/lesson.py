@@ -18,6 +18,7 @@ from fairlead.train.losses import (
     landmark_weight,
     mean_of,
     presence_loss,
+    there,
     visibility_loss,
     whitened,
 )
@@ -92,13 +93,12 @@ class Lesson(lightning.LightningModule):
         distance = (prediction.pixels - batch.pixels).norm(dim=-1)[seen]
         nees = 0.5 * whitened(prediction, batch).square().sum(-1)[seen]
         right = ((prediction.visible > 0.0) == seen).float().mean()
-        there = (batch.visibility > 0).any(dim=1)
         self.log("valid/median_px", distance.median(), prog_bar=True)
         self.log("valid/mean_px", distance.mean())
         self.log("valid/within_5_px", (distance < 5.0).float().mean())
         self.log("valid/nees_median", nees.median())
         self.log("valid/visibility_right", right)
-        self.log("valid/presence_right", ((prediction.present > 0.0) == there).float().mean())
+        self.log("valid/presence_right", ((prediction.present > 0.0) == there(batch)).float().mean())
 
     def configure_optimizers(self) -> Any:
         """AdamW without decay of biases and norms; the rate by the step."""

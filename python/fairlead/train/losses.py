@@ -56,10 +56,15 @@ def visibility_loss(prediction: Prediction, batch: Batch) -> Tensor:
     return F.binary_cross_entropy_with_logits(prediction.visible, seen, reduction="none")
 
 
+def there(batch: Batch) -> Tensor:
+    """(b,): whether the target is in the crop: some landmark of it, seen or hidden."""
+    return (batch.visibility > 0).any(dim=1)
+
+
 def presence_loss(prediction: Prediction, batch: Batch) -> Tensor:
-    """(b,): cross entropy of the target being in the crop [nat]: of some landmark of it being there, seen or hidden."""
-    there = (batch.visibility > 0).any(dim=1).to(prediction.present.dtype)
-    return F.binary_cross_entropy_with_logits(prediction.present, there, reduction="none")
+    """(b,): cross entropy of the target being in the crop [nat]."""
+    wanted = there(batch).to(prediction.present.dtype)
+    return F.binary_cross_entropy_with_logits(prediction.present, wanted, reduction="none")
 
 
 def distance_loss(prediction: Prediction, batch: Batch) -> Tensor:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Held-out pictures to measure a network on: labelled crops, or windows of a flight. docs/networks.md section 5."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -81,11 +81,11 @@ def _truth(folder: Path) -> list[BopFrame]:
     return [BopFrame(frame=pose.frame, K=K, T_camera_target=pose.T_camera_target) for pose in poses]
 
 
-def _images(folder: Path) -> Iterator[tuple[int, Image]]:
-    """Every image of a flight with its number."""
+def _images(folder: Path, numbers: Iterable[int]) -> Iterator[tuple[int, Image]]:
+    """Images of a flight by their numbers; of a clip all that it has."""
     if is_bop(folder):
-        for frame in read_bop(folder):
-            yield frame.frame, read_image(folder / "rgb" / f"{frame.frame:06d}.png")
+        for number in numbers:
+            yield number, read_image(folder / "rgb" / f"{number:06d}.png")
         return
     with open_video(folder / CLIP) as container:
         for number, picture in enumerate(pictures(container, named=str(folder / CLIP))):
@@ -99,7 +99,7 @@ def _windows(folder: Path, landmarks: tuple[str, ...], size: int, seed: int) -> 
         raise InputError(folder, f"expected the landmarks {', '.join(landmarks)}, which the network knows")
     table = _true_landmarks(folder / "landmarks_true.csv", landmarks)
     truth = {frame.frame: frame for frame in _truth(folder)}
-    for number, image in _images(folder):
+    for number, image in _images(folder, truth):
         if number not in truth or not (table[number][1] > 0).any():
             continue
         frame, (pixels, states) = truth[number], table[number]
