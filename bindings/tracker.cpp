@@ -144,6 +144,7 @@ void bind_options(nb::module_& m) {
         .def_rw("correlation_time_s", &TrackerOptions::correlation_time_s)
         .def_rw("correlation_angle_rad", &TrackerOptions::correlation_angle_rad)
         .def_rw("correlation_log_range", &TrackerOptions::correlation_log_range)
+        .def_rw("design_effect", &TrackerOptions::design_effect)
         .def_rw("range_to_origin", &TrackerOptions::range_to_origin)
         .def_rw("seed", &TrackerOptions::seed);
 }

@@ -155,7 +155,7 @@ def open_views(config: InputConfig, target: Target, camera: Camera) -> ViewSourc
 def told_correlation(source: ViewSource, options: TrackerOptions) -> TrackerOptions:
     """The options, with what the detector says of its errors where they say nothing."""
     said = options.correlation_time_s, options.correlation_angle_rad, options.correlation_log_range
-    if any(said) or not isinstance(source, DetectedViews):
+    if any(said) or options.design_effect > 1.0 or not isinstance(source, DetectedViews):
         return options
     told = source.correlation
     return replace(
@@ -163,6 +163,7 @@ def told_correlation(source: ViewSource, options: TrackerOptions) -> TrackerOpti
         correlation_time_s=told.time_s,
         correlation_angle_rad=told.angle_rad,
         correlation_log_range=told.log_range,
+        design_effect=told.design_effect,
     )
 
 

@@ -30,7 +30,7 @@ class Images:
 class Stubborn:
     """A detector whose errors stay for 0.2 rad."""
 
-    correlation = Correlation(angle_rad=0.2, log_range=1.0)
+    correlation = Correlation(angle_rad=0.2, log_range=1.0, design_effect=2.0)
 
     def detect(self, image: np.ndarray, frame: int, stamp_ns: int) -> View:
         raise AssertionError(ImageFrame)
@@ -42,27 +42,29 @@ class Stubborn:
 def test_the_estimator_is_told_what_the_detector_says() -> None:
     told = told_correlation(DetectedViews(Images(), Stubborn()), TrackerOptions())
     assert (told.correlation_time_s, told.correlation_angle_rad, told.correlation_log_range) == (0.0, 0.2, 1.0)
+    assert told.design_effect == 2.0
 
 
 def test_the_option_file_has_the_last_word() -> None:
-    options = replace(TrackerOptions(), correlation_time_s=0.5)
-    assert told_correlation(DetectedViews(Images(), Stubborn()), options) == options
+    for said in ({"correlation_time_s": 0.5}, {"design_effect": 3.0}):
+        options = replace(TrackerOptions(), **said)
+        assert told_correlation(DetectedViews(Images(), Stubborn()), options) == options
 
 
 @pytest.mark.parametrize("angle_deg", [0.0, 7.5])
 def test_the_card_says_it(angle_deg: float) -> None:
-    calibration = Calibration(correlation_angle_deg=angle_deg, correlation_log_range=0.0)
+    calibration = Calibration(correlation_angle_deg=angle_deg, correlation_log_range=0.0, design_effect=4.0)
     told = card_from_json(card_json(replace(CARD, calibration=calibration)), Path("x.onnx")).calibration.correlation
-    assert told == Correlation(angle_rad=float(np.radians(angle_deg)))
+    assert told == Correlation(angle_rad=float(np.radians(angle_deg)), design_effect=4.0)
 
 
 def test_a_card_that_says_nothing_tells_the_default() -> None:
-    assert said({}) == Correlation(angle_rad=float(np.radians(12.0)), log_range=1.5)
+    assert said({}) == Correlation(angle_rad=float(np.radians(12.0)), log_range=1.5, design_effect=2.5)
 
 
 @pytest.mark.parametrize("seconds", [0.0, 8.0])
 def test_a_card_that_says_a_time_means_that_alone(seconds: float) -> None:
-    assert said({"correlation_time_s": seconds}) == Correlation(time_s=seconds)
+    assert said({"correlation_time_s": seconds}) == Correlation(time_s=seconds, design_effect=2.5)
 
 
 def said(calibration: dict[str, float]) -> Correlation:

@@ -146,14 +146,15 @@ Vec6 Path::step(const VecX& dX) noexcept {
     return d.head<6>();
 }
 
-Mat66 Path::covariance(const window::ViewBlock& view, double noise_factor, const MatX& Sigma) noexcept {
+Mat66 Path::covariance(const window::ViewBlock& view, const window::Problem& problem, const MatX& Sigma) noexcept {
     SigmaY_t_.noalias() = Sigma * Y_t_;
     JointSquare inner = Y_t_.transpose() * SigmaY_t_;
     inner.diagonal().array() += 1.0;
     const JointSquare joint = L_inverse_.transpose() * inner * L_inverse_;
     // This one view errs as told, however alike its neighbours: docs/motion.md eq. (13).
     const Mat66 alone = (L_inverse_.transpose() * L_inverse_).topLeftCorner<6, 6>();
-    const Mat66 covariance = joint.topLeftCorner<6, 6>() - ((1.0 - view.share) / noise_factor) * alone * view.H * alone;
+    const double excess = (problem.pose_factor * view.share / problem.noise_factor - 1.0) / problem.noise_factor;
+    const Mat66 covariance = joint.topLeftCorner<6, 6>() + excess * alone * view.H * alone;
     return 0.5 * (covariance + covariance.transpose());
 }
 

@@ -77,7 +77,7 @@ std::vector<Mat66> Path::covariances(const window::Problem& problem, const MatX&
         anew_.linearise(n);
         tie(anew_, here.view.state.T_camera_target, problem.X, here.attitude, n);
         if (eliminate(anew_, here.view, problem.X, problem.noise_factor, n, &later[i], S, g))
-            covariances[i] = covariance(here.view, problem.noise_factor, Sigma);
+            covariances[i] = covariance(here.view, problem, Sigma);
         absorb(anew_, here.view, problem.X, problem.noise_factor, n);
     }
     anew_ = base_;

@@ -23,6 +23,7 @@ Batch::Batch(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, con
     problem_.camera = camera;
     problem_.prior = window::make_prior(X0, P0);
     problem_.X.assign(X0.begin(), X0.end());
+    problem_.design_effect = problem_.pose_factor = options.design_effect;
     scratch_.reserve(X0.size());
     update_blocks();
 }

@@ -34,6 +34,8 @@ void validate(const TrackerOptions& options) {
             "correlation_angle_rad", options.correlation_angle_rad, "zero or more");
     require(options.correlation_log_range >= 0.0 && std::isfinite(options.correlation_log_range),
             "correlation_log_range", options.correlation_log_range, "zero or more");
+    require(options.design_effect >= 1.0 && std::isfinite(options.design_effect), "design_effect",
+            options.design_effect, "one or more");
     require(options.ambiguity_log_odds >= 0.0, "ambiguity_log_odds", options.ambiguity_log_odds, "zero or more");
 }
 

@@ -24,7 +24,7 @@ Mat66 Batch::covariance(const Candidate& candidate) const {
     } else {
         MatX Yt(Sigma_.rows(), window::ViewState::kDim);
         MatX SigmaYt = Yt;
-        covariance = window::state_covariance(block(candidate), problem_.X, Sigma_, problem_.noise_factor, Yt, SigmaYt);
+        covariance = window::state_covariance(block(candidate), problem_.X, Sigma_, problem_.pose_factor, Yt, SigmaYt);
     }
     if (bias_variance_ > 0.0) {
         const Vec6& rate = bias_pose_rate_[static_cast<std::size_t>(&candidate - candidates_.data())];

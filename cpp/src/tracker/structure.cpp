@@ -40,6 +40,7 @@ Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX&
     }
     problem_.X.assign(X0.begin(), X0.end());
     problem_.loss.threshold = options.loss_threshold;
+    problem_.design_effect = problem_.pose_factor = options.design_effect;
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(X0.size());
     H_data_.setZero(n, n);
     g_data_.setZero(n);
@@ -180,9 +181,9 @@ void Structure::settle_on_path(double error) noexcept {
 void Structure::locate_newest(Fusion& fusion) noexcept {
     const ViewBlock& newest = problem_.views.back();
     fusion.T_camera_target = newest.state.T_camera_target;
-    fusion.covariance =
-        on_path_ ? path_->covariance(newest, problem_.noise_factor, Sigma_)
-                 : window::state_covariance(newest, problem_.X, Sigma_, problem_.noise_factor, Yt_, SigmaYt_);
+    fusion.covariance = on_path_
+                            ? path_->covariance(newest, problem_, Sigma_)
+                            : window::state_covariance(newest, problem_.X, Sigma_, problem_.pose_factor, Yt_, SigmaYt_);
 }
 
 /// A view errs as told, however much its errors are like those before: its pose is what the whole view says,

@@ -45,14 +45,14 @@ double structure_covariance(const Problem& problem, Workspace& workspace, MatX& 
 }
 
 StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma,
-                             double noise_factor, MatX& Yt, MatX& SigmaYt) noexcept {
+                             double pose_factor, MatX& Yt, MatX& SigmaYt) noexcept {
     Yt.setZero();
     for (const PointTerm& term : view.terms)
         Yt.block<3, ViewState::kDim>(3 * term.landmark, 0) +=
             reduced_rows(view, term, X_target[static_cast<std::size_t>(term.landmark)]);
     for (Eigen::Index c = 0; c < ViewState::kDim; ++c) SigmaYt.col(c).noalias() = Sigma * Yt.col(c);
     StateMatrix inner = Yt.transpose() * SigmaYt;
-    inner.diagonal().array() += noise_factor * view.share;  // this one view errs as told, however alike its neighbours
+    inner.diagonal().array() += pose_factor * view.share;  // this one view errs as told, however alike its neighbours
     const StateMatrix covariance = view.L_inverse.transpose() * inner * view.L_inverse;
     return 0.5 * (covariance + covariance.transpose());
 }
@@ -60,17 +60,25 @@ StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_targ
 void update_noise_factor(Problem& problem, double determined) noexcept {
     double squares = 0.0;
     double freedom = -determined;
+    double views_in_all = 0.0;
     for (const ViewBlock& view : problem.views) {
         squares += view.weighted_squares;
         freedom += 2.0 * view.weights - ViewState::kDim * view.share;
+        views_in_all += view.share;
     }
     for (CompressedViews& views : problem.compressed) {
         if (views.empty()) continue;
         squares += views.value(problem.X);
         freedom += 2.0 * views.weights() - ViewState::kDim * views.views();
+        views_in_all += views.views();
     }
     squares = std::max(squares, 0.0) / gaussian_consistency(problem.loss.threshold);
-    problem.noise_factor = (kNoiseBelief + squares) / (kNoiseBelief + std::max(freedom, 0.0));
+    freedom = std::max(freedom, 0.0);
+    const double shared = (problem.design_effect - 1.0) * ViewState::kDim * views_in_all;
+    const double factor = (kNoiseBelief + squares) / (kNoiseBelief + freedom);
+    const double own = (kNoiseBelief + std::max(freedom - shared, 0.0)) / (kNoiseBelief + freedom);
+    problem.noise_factor = factor;
+    problem.pose_factor = problem.design_effect * std::max(factor, std::min(1.0, factor / own));
 }
 
 void update_prior_factors(Problem& problem, const MatX& H, const VecX& g, std::span<const Vec3> X,

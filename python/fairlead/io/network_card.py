@@ -100,12 +100,18 @@ class Calibration:
     """The same by the turn of the line of sight in the target frame [deg]."""
     correlation_log_range: float = 1.5
     """The same by the logarithm of the range [-]."""
+    design_effect: float = 2.5
+    """The pose of an image errs so many times more, squared, since its landmarks err alike, docs/motion.md eq. (16)."""
 
     @property
     def correlation(self) -> Correlation:
-        """How long errors stay, as estimators take it."""
-        angle_rad = math.radians(self.correlation_angle_deg)
-        return Correlation(time_s=self.correlation_time_s, angle_rad=angle_rad, log_range=self.correlation_log_range)
+        """How alike errors are, as estimators take it."""
+        return Correlation(
+            time_s=self.correlation_time_s,
+            angle_rad=math.radians(self.correlation_angle_deg),
+            log_range=self.correlation_log_range,
+            design_effect=self.design_effect,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -250,6 +256,7 @@ def _calibration(fields: Fields, landmarks: int, kind: Kind) -> Calibration:
         tail_dof=number(fields, "tail_dof", 0.0, 0.1, 1e6) if "tail_dof" in fields else None,
         sigma_px=sigma,
         spread_factor=number(fields, "spread_factor", default.spread_factor, 0.0, 1e3),
+        design_effect=number(fields, "design_effect", default.design_effect, 1.0, 1e3),
         **_correlation(fields),
     )
 

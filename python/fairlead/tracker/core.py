@@ -44,6 +44,8 @@ class TrackerOptions:
     """The same by the turn of the line of sight in the target frame [rad]; 0: it makes no difference."""
     correlation_log_range: float = _D.correlation_log_range
     """The same by the logarithm of the range [-]; 0: it makes no difference."""
+    design_effect: float = _D.design_effect
+    """So many times more errs the pose of a view, squared, since its landmarks err alike [-], docs/motion.md (16)."""
     range_to_origin: bool = _D.range_to_origin
     """Whether readings of the range to the target's origin will come, docs/range.md."""
     seed: int = _D.seed

@@ -17,8 +17,10 @@ from fairlead.progress import ProgressFactory, silent
 from fairlead.train.accuracy import draw_reliability, lines, markdown
 from fairlead.train.calibration import fit
 from fairlead.train.checkpoint import load_lesson
+from fairlead.train.design_effect import design_effect
 from fairlead.train.findings import joined, look
 from fairlead.train.pictures import is_sequence, open_pictures
+from fairlead.types import Points3
 
 CALIBRATION = "calibration.toml"
 HALF = 64
@@ -31,7 +33,7 @@ def calibrate_network(
     output: Path,
     *,
     focal_px: float,
-    middle: np.ndarray,
+    positions: Points3,
     seed: int = 0,
     progress: ProgressFactory = silent,
 ) -> list[str]:
@@ -44,7 +46,7 @@ def calibrate_network(
     opened = [open_pictures(folder, lesson.landmarks, lesson.size, seed) for folder in folders]
     with progress("pictures", lambda: sum(count for count, _ in opened)) as advance:
         findings = joined([
-            look(lesson, pictures, condition=k, focal_px=focal_px, middle=middle, advance=advance)
+            look(lesson, pictures, condition=k, focal_px=focal_px, positions=positions, advance=advance)
             for k, (_, pictures) in enumerate(opened)
         ])  # fmt: skip
     crops = np.array(
@@ -53,8 +55,11 @@ def calibrate_network(
     fitted = crops[findings.condition] & ((findings.picture // HALF) % 2 == 0)
     if not (findings.visibility[fitted] == 2).any() or not (findings.visibility[~fitted] == 2).any():
         raise InputError(folders[0], f"expected crops, at least {2 * HALF}, to calibrate with")
-    calibration = fit(findings.where(fitted), len(lesson.landmarks))
-    judged = findings.where(~fitted)
+    n, judged = len(lesson.landmarks), findings.where(~fitted)
+    calibration = fit(findings.where(fitted), n)
+    alike = design_effect(findings.where(fitted), calibration, n)
+    if np.isfinite(alike):
+        calibration = dataclasses.replace(calibration, design_effect=alike)
     table = lines(judged, calibration, lesson.landmarks, [folder.name for folder in folders])
     output.mkdir(parents=True, exist_ok=True)
     write_calibration(output / CALIBRATION, calibration)
@@ -70,6 +75,7 @@ def calibrate_network(
     return [
         f"visible landmarks: median {whole.median_px:.2f} px, mean {whole.mean_px:.2f} px of the flight's image",
         f"NEES {whole.nees:.2f}, {whole.inside_50:.0%} in the 50 % ellipse, {whole.inside_99:.1%} in the 99 % ellipse",
+        f"design effect {alike:.2f}; of what it was not fitted to {design_effect(judged, calibration, n):.2f}",
         f"pictures without the target: {called:.2%} of the landmarks are called visible",
         str(output / CALIBRATION),
     ]
@@ -79,7 +85,7 @@ def write_calibration(path: Path, calibration: Calibration) -> None:
     """As TOML, six digits."""
     scale = ", ".join(f"{value:.6g}" for value in calibration.scale)
     text = f"visible_threshold = {calibration.visible_threshold:.6g}\nfloor_px = {calibration.floor_px:.6g}\n"
-    text += f"scale = [{scale}]\n"
+    text += f"scale = [{scale}]\ndesign_effect = {calibration.design_effect:.6g}\n"
     if calibration.tail_dof is not None:
         text += f"tail_dof = {calibration.tail_dof:.6g}\n"
     path.write_text(text, encoding="utf-8")
@@ -87,7 +93,7 @@ def write_calibration(path: Path, calibration: Calibration) -> None:
 
 def read_calibration(path: Path, landmarks: int) -> Calibration:
     """What `write_calibration` wrote. Raises InputError."""
-    fields = Fields(read_toml(path), ("visible_threshold", "floor_px", "scale", "tail_dof"), path)
+    fields = Fields(read_toml(path), ("visible_threshold", "floor_px", "scale", "tail_dof", "design_effect"), path)
     scale = tuple(fields.numbers("scale", landmarks))
     if min(scale) <= 0.0:
         raise fields.error("scale", "expected numbers above 0")
@@ -95,5 +101,6 @@ def read_calibration(path: Path, landmarks: int) -> Calibration:
         visible_threshold=fields.number("visible_threshold"),
         floor_px=fields.number("floor_px", minimum=0.0),
         scale=scale,
+        design_effect=fields.number("design_effect", minimum=1.0),
         tail_dof=fields.number("tail_dof", minimum=0.1) if "tail_dof" in fields else None,
     )

@@ -74,7 +74,7 @@ def calibrate(
     lens = load_camera(folder / "camera.yaml" if camera is None else camera)
     return calibrate_network(
         checkpoint, data, output, focal_px=float(lens.K[0, 0]),
-        middle=0.5 * (positions.min(axis=0) + positions.max(axis=0)), seed=seed, progress=progress,
+        positions=positions, seed=seed, progress=progress,
     )  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How long a detector's errors stay."""
+"""How alike a detector's errors are."""
 
 from dataclasses import dataclass
 
@@ -17,3 +17,5 @@ class Correlation:
     """Turn of the line of sight in the target frame."""
     log_range: float = 0.0
     """Change of the logarithm of the range."""
+    design_effect: float = 1.0
+    """The pose of a view errs so many times more, squared, since its landmarks err alike, docs/motion.md eq. (16)."""

@@ -35,6 +35,7 @@ def findings(dof: float, count: int = 6000, seed: int = 0) -> Findings:
         condition=np.zeros(count, int), picture=np.arange(count) // 3, landmark=landmark,
         visibility=np.where(visible > 0.0, 2, 1), error=error, cholesky=cholesky, visible=visible,
         unit=np.full(count, 0.5), range_m=np.full(count, 1000.0), azimuth_deg=np.full(count, 170.0),
+        jacobian=np.zeros((count, 2, 6)),
     )  # fmt: skip
 
 

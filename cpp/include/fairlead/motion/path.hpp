@@ -35,7 +35,8 @@ class Path {
     /// Twice the decrease of E that pose and motion bring by themselves.
     [[nodiscard]] double decrease() const noexcept { return y_.squaredNorm(); }
     /// Of the view's pose as last joined, the structure's uncertainty in it.
-    [[nodiscard]] Mat66 covariance(const window::ViewBlock& view, double noise_factor, const MatX& Sigma) noexcept;
+    [[nodiscard]] Mat66 covariance(const window::ViewBlock& view, const window::Problem& problem,
+                                   const MatX& Sigma) noexcept;
 
     /// Takes the newest view as last joined; gives back a view block that is free again.
     [[nodiscard]] window::ViewBlock settle(window::ViewBlock&& view, const window::Problem& problem) noexcept;

@@ -28,6 +28,7 @@ struct TrackerOptions {
     double correlation_time_s = 0.0;     ///< [s] over which detections err alike, so that many views say what one does
     double correlation_angle_rad = 0.0;  ///< [rad] the same by the turn of the line of sight in the target frame
     double correlation_log_range = 0.0;  ///< [-] the same by the logarithm of the range; 0 of each: makes no difference
+    double design_effect = 1.0;          ///< [-] by which errors that its landmarks share widen a view's pose
     bool range_to_origin = false;        ///< readings of the range to the target's origin will come
     std::uint64_t seed = 0;              ///< of the consensus search
 };

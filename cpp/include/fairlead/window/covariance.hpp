@@ -11,13 +11,14 @@ namespace fairlead::window {
 /// directions of the model that the data determine, eq. (14).
 double structure_covariance(const Problem& problem, Workspace& workspace, MatX& Sigma) noexcept;
 
-/// Covariance of a view's xi with the structure's uncertainty in it, docs/estimator.md eq. (10):
+/// Covariance of a view's xi with the structure's uncertainty in it, docs/estimator.md eq. (10), f the pose factor:
 ///   f L^-T L^-1 + L^-T Y Sigma_X Y^T L^-1.  Y is scratch (6 x 3N transposed).
 [[nodiscard]] StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma,
-                                           double noise_factor, MatX& Yt, MatX& SigmaYt) noexcept;
+                                           double pose_factor, MatX& Yt, MatX& SigmaYt) noexcept;
 
 /// Variance component of the told noise (Foerstner 1979), pulled towards 1 with the weight of kNoiseBelief degrees of
-/// freedom, docs/estimator.md eq. (14); `determined` directions of the model are taken off.
+/// freedom, docs/estimator.md eq. (14); what landmarks share leaves no residual but widens poses, docs/motion.md eq.
+/// (17). `determined` directions of the model are taken off.
 void update_noise_factor(Problem& problem, double determined) noexcept;
 
 /// How far the told prior is off: PriorEvidence at the data's quadratic H, g about X (told units), docs/estimator.md

@@ -33,6 +33,8 @@ struct Problem {
     std::vector<Vec3> X;  ///< landmarks, target frame [m]
     std::vector<ViewBlock> views;
     double noise_factor = 1.0;   ///< multiplies every told covariance
+    double design_effect = 1.0;  ///< by which errors that its landmarks share widen the pose of a view
+    double pose_factor = 1.0;  ///< multiplies the covariance of what one view says of its pose, docs/motion.md eq. (17)
     PriorFactors prior_factors;  ///< of P0; `believed` multiplies it in E
     Loss loss;                   ///< threshold in units of the estimated noise
 

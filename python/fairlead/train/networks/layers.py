@@ -5,23 +5,23 @@
 import torch
 from torch import Tensor, nn
 
+from fairlead.train.networks.depthwise import DepthwiseConv2d
+
 
 class ConvBnSiLU(nn.Sequential):
     """Convolution without bias, batch norm, SiLU; the size stays, up to the stride."""
 
-    def __init__(self, inputs: int, outputs: int, size: int = 1, *, stride: int = 1, groups: int = 1) -> None:
-        super().__init__(
-            nn.Conv2d(inputs, outputs, size, stride, size // 2, groups=groups, bias=False),
-            nn.BatchNorm2d(outputs),
-            nn.SiLU(inplace=True),
-        )
+    def __init__(self, inputs: int, outputs: int, size: int = 1, *, stride: int = 1) -> None:
+        conv = nn.Conv2d(inputs, outputs, size, stride, size // 2, bias=False)
+        super().__init__(conv, nn.BatchNorm2d(outputs), nn.SiLU(inplace=True))
 
 
 class Separable(nn.Sequential):
     """Depthwise convolution, then a 1 x 1 one."""
 
     def __init__(self, inputs: int, outputs: int, size: int = 5) -> None:
-        super().__init__(ConvBnSiLU(inputs, inputs, size, groups=inputs), ConvBnSiLU(inputs, outputs))
+        depthwise = nn.Sequential(DepthwiseConv2d(inputs, size), nn.BatchNorm2d(inputs), nn.SiLU(inplace=True))
+        super().__init__(depthwise, ConvBnSiLU(inputs, outputs))
 
 
 class CspNextBlock(nn.Module):

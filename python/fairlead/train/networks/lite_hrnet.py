@@ -9,6 +9,8 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from fairlead.train.networks.depthwise import DepthwiseConv2d
+
 WIDTHS = (40, 80, 160, 320)
 MODULES = (2, 4, 2)
 """Of the stages with two, three and four branches."""
@@ -16,9 +18,14 @@ UNITS = 2
 """Shuffle units of a branch."""
 
 
-def conv_norm(inputs: int, outputs: int, size: int = 1, stride: int = 1, groups: int = 1) -> list[nn.Module]:
+def conv_norm(inputs: int, outputs: int, size: int = 1, stride: int = 1) -> list[nn.Module]:
     """Convolution without bias and batch norm."""
-    return [nn.Conv2d(inputs, outputs, size, stride, size // 2, groups=groups, bias=False), nn.BatchNorm2d(outputs)]
+    return [nn.Conv2d(inputs, outputs, size, stride, size // 2, bias=False), nn.BatchNorm2d(outputs)]
+
+
+def depthwise_norm(channels: int, stride: int = 1) -> list[nn.Module]:
+    """Depthwise 3 x 3 and batch norm."""
+    return [DepthwiseConv2d(channels, 3, stride), nn.BatchNorm2d(channels)]
 
 
 def shuffle(x: Tensor) -> Tensor:
@@ -33,11 +40,11 @@ class Stem(nn.Module):
     def __init__(self) -> None:
         super().__init__()
         self.first = nn.Sequential(*conv_norm(3, 32, 3, 2), nn.ReLU(inplace=True))
-        self.left = nn.Sequential(*conv_norm(16, 16, 3, 2, 16), *conv_norm(16, 16), nn.ReLU(inplace=True))
+        self.left = nn.Sequential(*depthwise_norm(16, 2), *conv_norm(16, 16), nn.ReLU(inplace=True))
         self.right = nn.Sequential(
             *conv_norm(16, 32),
             nn.ReLU(inplace=True),
-            *conv_norm(32, 32, 3, 2, 32),
+            *depthwise_norm(32, 2),
             *conv_norm(32, 16),
             nn.ReLU(inplace=True),
         )
@@ -56,7 +63,7 @@ class ShuffleUnit(nn.Module):
         half = channels // 2
         self.through = nn.Sequential(
             *conv_norm(half, half), nn.ReLU(inplace=True),
-            *conv_norm(half, half, 3, 1, half),
+            *depthwise_norm(half),
             *conv_norm(half, half), nn.ReLU(inplace=True),
         )  # fmt: skip
 
@@ -71,7 +78,7 @@ def narrower(inputs: int, outputs: int, steps: int) -> nn.Module:
     layers: list[nn.Module] = []
     for step in range(steps):
         last = step == steps - 1
-        layers += [*conv_norm(inputs, inputs, 3, 2, inputs), *conv_norm(inputs, outputs if last else inputs)]
+        layers += [*depthwise_norm(inputs, 2), *conv_norm(inputs, outputs if last else inputs)]
         if not last:
             layers.append(nn.ReLU(inplace=True))
     return nn.Sequential(*layers)
@@ -108,7 +115,7 @@ class Module(nn.Module):
 
 def separable(inputs: int, outputs: int, stride: int = 1) -> nn.Module:
     """Depthwise 3 x 3, then 1 x 1."""
-    layers = [*conv_norm(inputs, inputs, 3, stride, inputs), *conv_norm(inputs, outputs), nn.ReLU(inplace=True)]
+    layers = [*depthwise_norm(inputs, stride), *conv_norm(inputs, outputs), nn.ReLU(inplace=True)]
     return nn.Sequential(*layers)
 
 
