@@ -35,23 +35,24 @@ class Bound:
         return float(np.sqrt(3.0 * np.diag(self.X_covariance).mean()))
 
 
-def bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0) -> Bound:
+def bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0, design_effect: float = 1.0) -> Bound:
     """All views together; `factor`: of the variances; `inefficiency`: frames that say as much as one.
 
-    Errors that stay for a while weigh on what the views say together, not on what each says alone: the covariance with
-    variances times c, less the (c - 1) times too much that it gives each single view, docs/reproduce.md eq. (4).
+    Errors that stay for a while weigh on what the views say together, not on what each says alone; those that landmarks
+    share, on the pose of each: the covariance with variances times c, where a single view's part counts d times instead
+    of c times, docs/reproduce.md eq. (4).
     """
     P0 = flight.told.covariance
     poses, X = _solve(flight, P0, factor * inefficiency)
-    if inefficiency > 1.0:
+    if max(inefficiency, design_effect) > 1.0:
         alone, _ = _solve(flight, np.zeros_like(P0), factor)
-        poses = poses - (inefficiency - 1.0) * alone
+        poses = poses + (design_effect - inefficiency) * alone
     return Bound(pose_covariances=poses, X_covariance=X)
 
 
-def causal_bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0) -> Bound:
+def causal_bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0, design_effect: float = 1.0) -> Bound:
     """Of each frame with the views up to it: what an online estimator can know."""
-    each = [bound(_first(flight, k), factor, inefficiency) for k in range(1, len(flight.views) + 1)]
+    each = [bound(_first(flight, k), factor, inefficiency, design_effect) for k in range(1, len(flight.views) + 1)]
     return Bound(
         pose_covariances=np.array([one.pose_covariances[-1] for one in each]), X_covariance=each[-1].X_covariance
     )

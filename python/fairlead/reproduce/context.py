@@ -11,7 +11,7 @@ from fairlead.io.target import load_target
 from fairlead.progress import ProgressFactory
 from fairlead.reproduce.bounds import Bound, bound, causal_bound
 from fairlead.reproduce.detections import Detections, Network, detect, networks_of
-from fairlead.reproduce.measured import Measured, Observed, measure, observe
+from fairlead.reproduce.measured import Measured, Observed, measure, observe, shared_error
 from fairlead.reproduce.methods import Flight, Track
 from fairlead.reproduce.sequences import ORDER, Sequence, find_sequences
 from fairlead.reproduce.work import flight_of, job_of, run_job
@@ -109,6 +109,10 @@ class Context:
         """How wrong it is."""
         return measure(self.observed(sequence, network))
 
+    def design_effect(self, sequence: Sequence, network: Network) -> float:
+        """By how much errors that landmarks share widen the pose of a view; 1 where too little was observed."""
+        return shared_error(sequence, self.observed(sequence, network))
+
     def runs(self, sequence: Sequence, network: Network) -> Seeds:
         """All methods with all told models."""
         key = (sequence.name, network.name)
@@ -134,12 +138,12 @@ class Context:
             if measured is None or found is None:
                 return None
             flight = flight_of(sequence, found.views, self.observed(sequence, network), 0)
-            f, c = measured.factor, measured.inefficiency
+            f, c, d = measured.factor, measured.inefficiency, self.design_effect(sequence, network)
             self._bounds[key] = Bounds(
                 white=bound(flight, f),
-                alike=bound(flight, f, c),
+                alike=bound(flight, f, c, d),
                 causal=causal_bound(flight, f),
-                causal_alike=causal_bound(flight, f, c),
+                causal_alike=causal_bound(flight, f, c, d),
             )
         return self._bounds[key]
 

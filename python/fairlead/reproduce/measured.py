@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
+from fairlead.evaluate.design_effect import design_effect, pose_jacobian
 from fairlead.reproduce.sequences import Sequence
 from fairlead.types import View
 
@@ -147,6 +148,17 @@ def measure(observed: Observed) -> Measured | None:
         inefficiency=inefficiency,
         stays_s=correlation_time_s(observed, inefficiency),
     )
+
+
+def shared_error(sequence: Sequence, observed: Observed) -> float:
+    """The design effect of the visible landmarks, at the true poses, networks.md eq. (7); 1 where nothing is known."""
+    views = (
+        (observed.errors[k, seen], observed.covariances[k, seen], pose_jacobian(sequence.camera, T, X[seen]))
+        for X in [sequence.true.positions]
+        for k, T in enumerate(sequence.T_true)
+        if (seen := np.isfinite(observed.errors[k]).all(axis=1) & observed.visible[k]).any()
+    )
+    return float(np.nan_to_num(design_effect(views), nan=1.0))
 
 
 def outlying(observed: Observed) -> np.ndarray:

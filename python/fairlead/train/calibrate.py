@@ -15,12 +15,12 @@ from fairlead.io.fields import Fields
 from fairlead.io.network_card import Calibration
 from fairlead.progress import ProgressFactory, silent
 from fairlead.train.accuracy import draw_reliability, lines, markdown
+from fairlead.train.alike import measured_design_effect
 from fairlead.train.calibration import fit
 from fairlead.train.checkpoint import load_lesson
-from fairlead.train.design_effect import design_effect
 from fairlead.train.findings import joined, look
 from fairlead.train.pictures import is_sequence, open_pictures
-from fairlead.types import Points3
+from fairlead.types import Target
 
 CALIBRATION = "calibration.toml"
 HALF = 64
@@ -33,7 +33,7 @@ def calibrate_network(
     output: Path,
     *,
     focal_px: float,
-    positions: Points3,
+    target: Target,
     seed: int = 0,
     progress: ProgressFactory = silent,
 ) -> list[str]:
@@ -43,10 +43,12 @@ def calibrate_network(
     InputError.
     """
     lesson = load_lesson(checkpoint)
+    if lesson.landmarks != target.landmarks:
+        raise InputError(checkpoint, f"knows other landmarks than {target.name}; expected the --target of its crops")
     opened = [open_pictures(folder, lesson.landmarks, lesson.size, seed) for folder in folders]
     with progress("pictures", lambda: sum(count for count, _ in opened)) as advance:
         findings = joined([
-            look(lesson, pictures, condition=k, focal_px=focal_px, positions=positions, advance=advance)
+            look(lesson, pictures, condition=k, focal_px=focal_px, positions=target.positions, advance=advance)
             for k, (_, pictures) in enumerate(opened)
         ])  # fmt: skip
     crops = np.array(
@@ -57,7 +59,7 @@ def calibrate_network(
         raise InputError(folders[0], f"expected crops, at least {2 * HALF}, to calibrate with")
     n, judged = len(lesson.landmarks), findings.where(~fitted)
     calibration = fit(findings.where(fitted), n)
-    alike = design_effect(findings.where(fitted), calibration, n)
+    alike = measured_design_effect(findings.where(fitted), calibration, n)
     if np.isfinite(alike):
         calibration = dataclasses.replace(calibration, design_effect=alike)
     table = lines(judged, calibration, lesson.landmarks, [folder.name for folder in folders])
@@ -75,7 +77,7 @@ def calibrate_network(
     return [
         f"visible landmarks: median {whole.median_px:.2f} px, mean {whole.mean_px:.2f} px of the flight's image",
         f"NEES {whole.nees:.2f}, {whole.inside_50:.0%} in the 50 % ellipse, {whole.inside_99:.1%} in the 99 % ellipse",
-        f"design effect {alike:.2f}; of what it was not fitted to {design_effect(judged, calibration, n):.2f}",
+        f"design effect {alike:.2f}; of what it was not fitted to {measured_design_effect(judged, calibration, n):.2f}",
         f"pictures without the target: {called:.2%} of the landmarks are called visible",
         str(output / CALIBRATION),
     ]

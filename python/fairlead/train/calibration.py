@@ -18,10 +18,15 @@ def declared(findings: Findings, threshold: float) -> np.ndarray:
     return (findings.visible > threshold) & (findings.visibility > 0)
 
 
-def squared(findings: Findings, calibration: Calibration, landmarks: int) -> np.ndarray:
-    """(m,) e^T S^-1 e with S = scale S_network + floor^2 I, docs/networks.md eq. (5)."""
+def covariances(findings: Findings, calibration: Calibration, landmarks: int) -> np.ndarray:
+    """(m, 2, 2) S = scale S_network + floor^2 I, docs/networks.md eq. (5)."""
     scale = np.broadcast_to(np.array(calibration.scale), (landmarks,))[findings.landmark]
-    S = scale[:, None, None] * findings.covariance + calibration.floor_px**2 * np.eye(2)
+    return scale[:, None, None] * findings.covariance + calibration.floor_px**2 * np.eye(2)
+
+
+def squared(findings: Findings, calibration: Calibration, landmarks: int) -> np.ndarray:
+    """(m,) e^T S^-1 e."""
+    S = covariances(findings, calibration, landmarks)
     return np.einsum("mi,mij,mj->m", findings.error, np.linalg.inv(S), findings.error)
 
 
@@ -73,8 +78,7 @@ def _scales(rows: Findings, calibration: Calibration, landmarks: int) -> tuple[f
 
 def _log_likelihood(rows: Findings, calibration: Calibration, landmarks: int) -> float:
     assert calibration.tail_dof is not None
-    scale = np.array(calibration.scale)[rows.landmark]
-    S = scale[:, None, None] * rows.covariance + calibration.floor_px**2 * np.eye(2)
+    S = covariances(rows, calibration, landmarks)
     s = squared(rows, calibration, landmarks)
     nu = calibration.tail_dof
     density = np.log(nu / (nu - 2.0)) - (1.0 + 0.5 * nu) * np.log1p(s / (nu - 2.0))

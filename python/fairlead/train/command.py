@@ -70,11 +70,11 @@ def calibrate(
     from fairlead.train.calibrate import calibrate_network
 
     folder = shipped_data("frigate") if target is None else target.parent
-    positions = load_target(folder / "target.toml" if target is None else target).positions
+    told = load_target(folder / "target.toml" if target is None else target)
     lens = load_camera(folder / "camera.yaml" if camera is None else camera)
     return calibrate_network(
         checkpoint, data, output, focal_px=float(lens.K[0, 0]),
-        positions=positions, seed=seed, progress=progress,
+        target=told, seed=seed, progress=progress,
     )  # fmt: skip
 
 

@@ -58,7 +58,7 @@ class CalibrateConfig:
     output: Annotated[Path, arg(aliases=["-o"])]
     """Folder for calibration.toml, tables and figures."""
     target: Path | None = None
-    """target.toml, to whose middle ranges are measured; the frigate's if not given."""
+    """target.toml whose landmarks the network knows; the frigate's if not given."""
     camera: Path | None = None
     """The flight's calibration, for errors in its pixels; camera.yaml beside the target if not given."""
     seed: int = 0

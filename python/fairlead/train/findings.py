@@ -8,11 +8,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 import torch
 
-from fairlead import geometry
+from fairlead.evaluate.design_effect import pose_jacobian
 from fairlead.progress import Progress
 from fairlead.train.lesson import Lesson
 from fairlead.train.pictures import Picture, seen_from
-from fairlead.types import Matrix4, Points3
+from fairlead.types import Points3
 
 BATCH = 16
 
@@ -94,23 +94,12 @@ def look(
                     unit=np.full(n, focal_px / each.focal_px),
                     range_m=np.full(n, range_m),
                     azimuth_deg=np.full(n, azimuth_deg),
-                    jacobian=pose_jacobian(each.focal_px, each.T_camera_target, positions),
+                    jacobian=pose_jacobian(each.camera, each.T_camera_target, positions),
                 )
             )
             number += 1
         advance(len(batch))
     return joined(parts)
-
-
-def pose_jacobian(focal_px: float, T_camera_target: Matrix4, X_target: Points3) -> np.ndarray:
-    """(n, 2, 6) pixels by xi, T exp(xi): f / z [1 0 -x/z; 0 1 -y/z] R [I, -[X]_x]."""
-    R = T_camera_target[:3, :3]
-    x, y, z = geometry.transform(T_camera_target, X_target).T
-    zero = np.zeros_like(x)
-    by_point = np.stack([np.stack([z, zero, -x], axis=1), np.stack([zero, z, -y], axis=1)], axis=1)
-    turned = np.array([-geometry.hat(each) for each in X_target])
-    by_pose = np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=2)
-    return focal_px / z[:, None, None] ** 2 * (by_point @ R @ by_pose)
 
 
 def _batches(pictures: Iterable[Picture]) -> Iterator[list[Picture]]:

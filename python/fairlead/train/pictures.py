@@ -18,7 +18,7 @@ from fairlead.io.target import load_target
 from fairlead.opencv import Image, read_image
 from fairlead.opencv.crops import cut_resized
 from fairlead.train.crops import read_folders
-from fairlead.types import Matrix4
+from fairlead.types import Camera, Matrix4
 from fairlead.video import open_video, pictures
 
 CLIP = "clip.mkv"
@@ -41,6 +41,13 @@ class Picture:
     """(n,): 0 outside, 1 hidden, 2 visible."""
     focal_px: float
     T_camera_target: Matrix4
+
+    @property
+    def camera(self) -> Camera:
+        """That sees the target so large; where its axis is does not matter to derivatives."""
+        height, width = self.image.shape[:2]
+        K = np.diag([self.focal_px, self.focal_px, 1.0])
+        return Camera(name="crop", width=width, height=height, model="pinhole", K=K, distortion=np.zeros(0))
 
 
 def open_pictures(folder: Path, landmarks: tuple[str, ...], size: int, seed: int) -> tuple[int, Iterator[Picture]]:

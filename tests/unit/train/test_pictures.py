@@ -92,7 +92,11 @@ def test_calibrate_writes_what_export_takes(
 ) -> None:
     checkpoint = str(trained / "last.ckpt")
     flight = sequence(tmp_path / "flight", 30.0)
-    assert main(["calibrate", checkpoint, "--data", str(spots), str(flight), "-o", str(tmp_path / "found")]) == 0
+    data = ["--data", str(spots), str(flight), "-o", str(tmp_path / "found")]
+    assert main(["calibrate", checkpoint, *data]) == 2
+    assert "knows other landmarks than frigate" in capsys.readouterr().err
+    told = ["--target", str(flight / "target_true.toml"), "--camera", str(repository / "data/frigate/camera.yaml")]
+    assert main(["calibrate", checkpoint, *data, *told]) == 0
     assert "visible landmarks: median" in capsys.readouterr().out
     text = (tmp_path / "found" / "accuracy.md").read_text()
     assert all(f"| {name} | " in text for name in (*NAMES, "crops", "flight"))

@@ -30,6 +30,7 @@ _COVARIANCE = (
     Column(key="outliers", title="outliers [%]", percent=True, digits=2),
     Column(key="inefficiency", title="frames that say as much as one"),
     Column(key="stays_s", title="errors stay [s]", digits=2),
+    Column(key="design_effect", title="landmarks alike: pose errs x"),
 )
 
 
@@ -42,13 +43,15 @@ def landmarks(context: Context) -> Section:
             rows.append(
                 {"sequence": sequence.name, "network": network.label, "frames": len(sequence.truth)}
                 | dataclasses.asdict(measured)
+                | {"design_effect": context.design_effect(sequence, network)}
             )
     note = "Error: distance from the exact projection. Hidden landmarks are behind something, inside the image."
     trust = (
         "Shares inside the ellipses of the covariance that the network tells; right would be 50, 90, 99 %, and a NEES "
         "of 1. The variance factor is the same with outliers (beyond the 99.9 % ellipse) left out. Frames that say as "
-        "much as one: 1 for errors that are new in every frame, the number of frames for errors that stay; the last "
-        "column is the time constant that would make it so."
+        "much as one: 1 for errors that are new in every frame, the number of frames for errors that stay; then "
+        "the time constant that would make it so. Landmarks alike: by how much more the pose of a frame errs, squared, "
+        "than its landmarks say one by one (design effect)."
     )
     return Section(
         name="landmarks",
