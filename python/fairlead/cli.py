@@ -132,6 +132,8 @@ def _run(config: Config | NetworkConfig | TargetConfig) -> int:
         return 0
     verb = run.track(config, progress_bar) if isinstance(config, TrackConfig) else run.refine(config, progress_bar)
     counts = f"{verb.frames} frames, {verb.frames_with_pose} with a pose ({verb.coverage:.1%})"
+    if verb.frames_in_doubt:
+        counts += f", {verb.frames_in_doubt} contradict what was told (see the reasons in poses.csv)"
     if verb.report is not None:
         _show_metrics(verb.report)
     if verb.range_bias is not None:

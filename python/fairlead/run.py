@@ -40,6 +40,8 @@ class RunSummary:
     output: Path
     frames: int
     frames_with_pose: int
+    frames_in_doubt: int
+    """With a pose, but the data contradict what was told."""
     report: Path | None
     """Where truth was given."""
     range_bias: tuple[float, float] | None = None
@@ -84,7 +86,7 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
                     advance(source.work(seen.view))
         finally:
             folder.count_dropped(let_go(source))
-    return _finish(config, folder.record)
+    return _finish(config, folder)
 
 
 def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSummary:
@@ -110,7 +112,7 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
             folder.write(estimate, timing)
         folder.save_model(refinement.model)
     bias = (refinement.range_bias_m, refinement.range_bias_sigma_m) if config.range_bias_sigma_m > 0.0 else None
-    return replace(_finish(config, folder.record), range_bias=bias)
+    return replace(_finish(config, folder), range_bias=bias)
 
 
 def _solve(config: RefineConfig, batch: Callable[[], Refinement]) -> Refinement:
@@ -234,10 +236,14 @@ def _record(command: str, config: InputConfig, options: TrackerOptions | None) -
     return RunRecord(command=command, state="running", options=config, inputs=inputs, estimator=options, seed=seed)
 
 
-def _finish(config: InputConfig, record: RunRecord) -> RunSummary:
+def _finish(config: InputConfig, folder: RunFolder) -> RunSummary:
     report = None
     if config.truth is not None:
         report = evaluate(EvaluateConfig(run=config.output, truth=config.truth))
     return RunSummary(
-        output=config.output, frames=record.frames, frames_with_pose=record.frames_with_pose, report=report
+        output=config.output,
+        frames=folder.record.frames,
+        frames_with_pose=folder.record.frames_with_pose,
+        frames_in_doubt=folder.frames_in_doubt,
+        report=report,
     )

@@ -143,11 +143,14 @@ def test_coverage_eq_7() -> None:
         estimate(ok=False, reason="too_few"),
         estimate(ok=True),
         estimate(ok=False, reason="gated", resets=1),
+        estimate(ok=True, reason="contradiction", resets=2),
+        estimate(ok=True, reason="ambiguous", resets=2),
         estimate(ok=False, reason="gated", resets=2),
     ]
     found = coverage(run)
-    assert (found.n_frames, found.n_ok, found.rate, found.first_ok, found.n_resets) == (4, 1, 0.25, 1, 2)
+    assert (found.n_frames, found.n_ok, found.rate, found.first_ok, found.n_resets) == (6, 3, 0.5, 1, 2)
     assert found.reasons == (("gated", 2), ("too_few", 1))
+    assert found.doubts == (("contradiction", 1),)
 
 
 def test_coverage_of_no_frames_is_nan() -> None:

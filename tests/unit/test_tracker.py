@@ -76,6 +76,20 @@ def test_a_batch_takes_distances_ranges_attitudes_and_motion(flight: Simulation)
         refine(flight.views, flight.target_told, flight.camera, ranges=[replace(ranges[0], landmark="keel")])
 
 
+def test_a_batch_names_the_inliers_of_each_view(flight: Simulation) -> None:
+    views = list(flight.views)
+    wrong = {3: 4, 17: 0, 30: 11}
+    for k, j in wrong.items():
+        pixels = views[k].pixels.copy()
+        pixels[j] += 40.0
+        views[k] = replace(views[k], pixels=pixels)
+    views[9] = replace(views[9], landmarks=(), pixels=np.empty((0, 2)), covariances=np.empty((0, 2, 2)))
+    estimates = refine(views, flight.target_told, flight.camera).estimates
+    for k, (view, estimate) in enumerate(zip(views, estimates, strict=True)):
+        assert estimate.inliers == tuple(name for j, name in enumerate(view.landmarks) if wrong.get(k) != j)
+        assert estimate.n_inliers == len(estimate.inliers)
+
+
 def test_the_motion_of_the_target_holds_in_a_batch(flight: Simulation) -> None:
 
     moving = replace(flight.target_told, motion=MotionPrior(kind="range", jerk_density_m_s25=0.5))

@@ -34,10 +34,16 @@ struct BatchReadings {
     std::vector<Attitude> attitudes;
 };
 
+/// Owns what its estimates point to, so it moves but does not copy.
 struct Refinement {
-    std::vector<Estimate> estimates;  ///< one per view, in order; inlier_landmarks is empty
-    std::vector<Vec3> X;              ///< refined landmarks [m]
-    MatX covariance;                  ///< 3N x 3N [m^2]
+    Refinement() = default;
+    Refinement(Refinement&&) = default;
+    Refinement& operator=(Refinement&&) = default;
+
+    std::vector<Estimate> estimates;        ///< one per view, in order
+    std::vector<std::vector<int>> inliers;  ///< landmarks of each view that passed its gate: their inlier_landmarks
+    std::vector<Vec3> X;                    ///< refined landmarks [m]
+    MatX covariance;                        ///< 3N x 3N [m^2]
     double noise_factor = 1.0;
     double prior_factor = 1.0;           ///< likely; the covariance is reported with it
     double prior_factor_believed = 1.0;  ///< the model is estimated with it

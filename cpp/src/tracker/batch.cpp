@@ -12,7 +12,7 @@
 namespace fairlead {
 namespace {
 
-constexpr int kGraduations = 12;        // at most, of loss width and variance factors
+constexpr int kMeasurements = 12;       // at most, of the factors of noise and prior
 constexpr double kFactorChange = 0.01;  // relative change of the factors that counts as settled
 constexpr int kSecondLooks = 3;         // rounds in which views are tried from other poses
 
@@ -53,13 +53,12 @@ Refinement Batch::solve() {
     return result();
 }
 
-/// Covariance of the landmarks at the system that was assembled; returns the directions that the data determine.
-double Batch::measure_structure() {
+/// Covariance of the landmarks at the system that was assembled, and the directions that the data determine.
+void Batch::measure_structure() {
     window::scale_and_add_prior(problem_, problem_.X, workspace_);
     workspace_.llt.compute(workspace_.S);
-    const double determined = window::structure_covariance(problem_, workspace_, Sigma_);
+    determined_ = window::structure_covariance(problem_, workspace_, Sigma_);
     update_blocks();
-    return determined;
 }
 
 void Batch::update_blocks() {
@@ -128,24 +127,31 @@ double Batch::widest_loss() {
     return std::max(1.0, *high);
 }
 
-/// Graduated non-convexity: solves, measures the factors, narrows the loss by four, until all have settled.
+/// The joint solution with a loss mu times as wide.
+bool Batch::solve_widened(double mu, int max_iterations) {
+    problem_.loss.threshold = mu * options_.loss_threshold;
+    last_ = window::levenberg_marquardt(problem_, {.max_iterations = max_iterations}, workspace_);
+    iterations_ += last_.iterations;
+    return last_.ok;
+}
+
+/// Graduated non-convexity: the loss narrows by four. The factors are measured at its own width, until they have
+/// settled: a wide one takes in outliers, which would widen it further.
 void Batch::graduate(double mu) {
-    for (int round = 0; round < kGraduations; ++round) {
-        problem_.loss.threshold = mu * options_.loss_threshold;
-        last_ = window::levenberg_marquardt(problem_, {.max_iterations = mu > 1.0 ? 6 : 50}, workspace_);
-        iterations_ += last_.iterations;
-        if (!last_.ok || !window::assemble_data(problem_, 0.0, workspace_)) return;
+    for (; mu > 1.0; mu = std::max(1.0, 0.25 * mu))
+        if (!solve_widened(mu, 6)) return;
+    for (int round = 0; round < kMeasurements; ++round) {
+        if (!solve_widened(1.0, 50) || !window::assemble_data(problem_, 0.0, workspace_)) return;
         H_data_ = workspace_.S;
         g_data_ = workspace_.g;
-        const double determined = measure_structure();
+        measure_structure();
         const double noise = problem_.noise_factor;
         const double prior = problem_.prior_factors.believed;
-        window::update_noise_factor(problem_, determined);
-        if (mu == 1.0) window::update_prior_factors(problem_, H_data_, g_data_, problem_.X, workspace_);
+        window::update_noise_factor(problem_, determined_);
+        window::update_prior_factors(problem_, H_data_, g_data_, problem_.X, workspace_);
         const double change = std::max(std::abs(problem_.noise_factor / noise - 1.0),
                                        std::abs(problem_.prior_factors.believed / prior - 1.0));
-        if (mu == 1.0 && change < kFactorChange) return;
-        mu = std::max(1.0, 0.25 * mu);
+        if (change < kFactorChange) return;
     }
 }
 

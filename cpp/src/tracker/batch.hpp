@@ -46,8 +46,9 @@ class Batch {
     bool start_missing_views();
     bool take_second_look();
     double widest_loss();
+    bool solve_widened(double mu, int max_iterations);
     void graduate(double mu);
-    double measure_structure();
+    void measure_structure();
     void update_blocks();
 
     void start_path();
@@ -59,7 +60,7 @@ class Batch {
     [[nodiscard]] double range_score() const;
 
     Refinement result();
-    [[nodiscard]] Estimate estimate(const Candidate& candidate) const;
+    [[nodiscard]] Estimate estimate(const Candidate& candidate, std::vector<int>& inliers) const;
     [[nodiscard]] const window::ViewBlock& block(const Candidate& candidate) const;
     [[nodiscard]] Mat66 covariance(const Candidate& candidate) const;
 
@@ -77,6 +78,7 @@ class Batch {
     std::vector<Candidate> candidates_;
     std::vector<Observation> scratch_;
     window::LmSummary last_;
+    double determined_ = 0.0;  ///< directions of the model that the data determine
     int iterations_ = 0;
     int believed_ = 0, refused_ = 0;
 

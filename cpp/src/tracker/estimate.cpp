@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fairlead/tracker/estimate.hpp"
 
+#include <algorithm>
+
 namespace fairlead {
 
 const char* to_string(Status status) noexcept {
@@ -38,8 +40,15 @@ const char* to_string(Reason reason) noexcept {
             return "diverged";
         case Reason::alarm:
             return "alarm";
+        case Reason::contradiction:
+            return "contradiction";
     }
     return "";
+}
+
+Reason doubt(double noise_factor, double prior_factor, bool contradiction) noexcept {
+    if (std::max(noise_factor, prior_factor) > kAlarmFactor) return Reason::alarm;
+    return contradiction ? Reason::contradiction : Reason::none;
 }
 
 Estimate without_pose(Estimate estimate, Status status, Reason reason) noexcept {

@@ -33,7 +33,8 @@ Mat66 Batch::covariance(const Candidate& candidate) const {
     return covariance;
 }
 
-Estimate Batch::estimate(const Candidate& candidate) const {
+/// With the landmarks that passed the chi-square gate of the view.
+Estimate Batch::estimate(const Candidate& candidate, std::vector<int>& inliers) const {
     Estimate e;
     e.stamp_ns = candidate.stamp_ns;
     e.dropped = candidate.dropped;
@@ -42,7 +43,7 @@ Estimate Batch::estimate(const Candidate& candidate) const {
     const window::ViewBlock& view = block(candidate);
     e.status = Status::tracking;
     e.reason =
-        std::max(problem_.noise_factor, problem_.prior_factors.likely) > kAlarmFactor ? Reason::alarm : Reason::none;
+        doubt(problem_.noise_factor, problem_.prior_factors.likely, window::contradicts_prior(problem_, determined_));
     e.T_camera_target = view.state.T_camera_target;
     e.covariance = covariance(candidate);
     double squares = 0.0;
@@ -52,8 +53,10 @@ Estimate Batch::estimate(const Candidate& candidate) const {
         const Vec2 r = z - m.z;
         if (r.dot(m.information * r) > options_.gate * problem_.noise_factor) continue;
         squares += r.squaredNorm();
-        ++e.inliers;
+        inliers.push_back(m.landmark);
     }
+    e.inlier_landmarks = inliers;
+    e.inliers = static_cast<int>(inliers.size());
     e.reprojection_rms_px = std::sqrt(squares / std::max(1.0, 2.0 * e.inliers));
     return e;
 }
@@ -61,7 +64,9 @@ Estimate Batch::estimate(const Candidate& candidate) const {
 Refinement Batch::result() {
     Refinement refinement;
     if (path_) path_covariances_ = path_->covariances(problem_, Sigma_);
-    for (const Candidate& candidate : candidates_) refinement.estimates.push_back(estimate(candidate));
+    refinement.inliers.resize(candidates_.size());
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+        refinement.estimates.push_back(estimate(candidates_[k], refinement.inliers[k]));
     const std::size_t landmarks = problem_.X.size() - (options_.range_to_origin ? 1 : 0);
     refinement.X.assign(problem_.X.begin(), problem_.X.begin() + static_cast<std::ptrdiff_t>(landmarks));
     MatX Sigma = Sigma_;

@@ -220,7 +220,6 @@ Fusion Structure::fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<cons
     shares_.take();
     publish();
     if (!alike) locate_newest(fusion);
-    fusion.squares = problem_.views.back().weighted_squares;
     const double log_det = workspace_.llt.matrixLLT().diagonal().array().log().sum();
     fusion.information_gained = std::max(0.0, log_det - log_det_);
     log_det_ = log_det;

@@ -175,7 +175,7 @@ Estimate Tracker::State::fused(Estimate estimate, const SE3& T_start, bool conti
     }
     status = estimate.status = Status::tracking;
     estimate.resets = resets;
-    if (std::max(structure.noise_factor(), structure.prior_factor()) > kAlarmFactor) estimate.reason = Reason::alarm;
+    estimate.reason = doubt(structure.noise_factor(), structure.prior_factor(), structure.contradicts_prior());
     describe_residuals(estimate);
     return estimate;
 }

@@ -40,10 +40,10 @@ void CompressedViews::add(const ViewBlock& view, std::span<const Vec3> X) noexce
         quadratic += u.segment<3>(3 * a).dot(Mu);
     }
     for (Eigen::Index c = 0; c < ViewState::kDim; ++c) Lambda_.noalias() -= Yt.col(c) * Yt.col(c).transpose();
-    constant_ += view.weighted_squares + view.range_squares - y.squaredNorm() - 2.0 * linear + quadratic;
+    constant_ += view.inlier_squares + view.range_squares - y.squaredNorm() - 2.0 * linear + quadratic;
     views_ += view.share;
     empty_ = false;
-    weights_ += view.weights;
+    inliers_ += view.inliers;
 }
 
 void CompressedViews::replace(const MatX& Lambda, const VecX& eta, double scale) noexcept {

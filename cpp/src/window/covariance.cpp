@@ -8,22 +8,14 @@
 namespace fairlead::window {
 namespace {
 
-/// Exponential integral E1(x) for x >= 1 by its continued fraction (Abramowitz and Stegun 5.1.22).
-double exponential_integral(double x) noexcept {
-    double fraction = x;
-    for (int k = 40; k >= 1; --k) fraction = x + k / (1.0 + k / fraction);
-    return std::exp(-x) / fraction;
-}
-
-/// E[w s] / E[2 w] for Gaussian errors: what the robust loss takes from a variance estimate, docs/estimator.md eq.
+/// E[s | s <= a] / 2 for Gaussian errors: what is left of their variance within the threshold, docs/estimator.md eq.
 /// (15).
-double gaussian_consistency(double a) noexcept {
-    if (!(a < 100.0)) return 1.0;
-    const double tail = std::exp(-0.5 * a);
-    const double e1 = exponential_integral(0.5 * a);
-    const double squares = 2.0 - tail * (a + 2.0) + 0.5 * a * a * e1;
-    const double weights = 1.0 - tail + 0.5 * a * a * (tail / a - 0.5 * e1);
-    return squares / (2.0 * weights);
+double gaussian_consistency(double a) noexcept { return std::isinf(a) ? 1.0 : 1.0 - 0.5 * a / std::expm1(0.5 * a); }
+
+/// 99.99 % point of chi-square (Wilson and Hilferty 1931), within 2 % from one degree of freedom on.
+double chi_square_limit(double freedom) noexcept {
+    const double variance = 2.0 / (9.0 * freedom);
+    return freedom * std::pow(1.0 - variance + 3.719016485 * std::sqrt(variance), 3);
 }
 
 }  // namespace
@@ -62,14 +54,14 @@ void update_noise_factor(Problem& problem, double determined) noexcept {
     double freedom = -determined;
     double views_in_all = 0.0;
     for (const ViewBlock& view : problem.views) {
-        squares += view.weighted_squares;
-        freedom += 2.0 * view.weights - ViewState::kDim * view.share;
+        squares += view.inlier_squares;
+        freedom += 2.0 * view.inliers - ViewState::kDim * view.share;
         views_in_all += view.share;
     }
     for (CompressedViews& views : problem.compressed) {
         if (views.empty()) continue;
         squares += views.value(problem.X);
-        freedom += 2.0 * views.weights() - ViewState::kDim * views.views();
+        freedom += 2.0 * views.inliers() - ViewState::kDim * views.views();
         views_in_all += views.views();
     }
     squares = std::max(squares, 0.0) / gaussian_consistency(problem.loss.threshold);
@@ -79,6 +71,10 @@ void update_noise_factor(Problem& problem, double determined) noexcept {
     const double own = (kNoiseBelief + std::max(freedom - shared, 0.0)) / (kNoiseBelief + freedom);
     problem.noise_factor = factor;
     problem.pose_factor = problem.design_effect * std::max(factor, std::min(1.0, factor / own));
+}
+
+bool contradicts_prior(const Problem& problem, double determined) noexcept {
+    return problem.prior && squared_distance(*problem.prior, problem.X) > chi_square_limit(std::max(1.0, determined));
 }
 
 void update_prior_factors(Problem& problem, const MatX& H, const VecX& g, std::span<const Vec3> X,

@@ -27,7 +27,7 @@ Pair closest_pair(std::span<const ViewBlock> views, std::span<Eigen::Vector4d> d
 
 int most_redundant(std::span<const ViewBlock> views, std::span<Eigen::Vector4d> descriptors) noexcept {
     const auto [first, second, distance] = closest_pair(views, descriptors);
-    const bool second_says_less = views[second].weights <= views[first].weights;
+    const bool second_says_less = views[second].inliers <= views[first].inliers;
     return static_cast<int>(second_says_less ? second : first);
 }
 

@@ -70,4 +70,12 @@ LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance) {
     return prior;
 }
 
+double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept {
+    const Eigen::Map<const VecX> x(X.front().data(), prior.mean.size());
+    double distance = 0.0;
+    for (Eigen::Index c = 0; c < x.size(); ++c)
+        distance += (x[c] - prior.mean[c]) * prior.information.col(c).dot(x - prior.mean);
+    return distance;
+}
+
 }  // namespace fairlead::window

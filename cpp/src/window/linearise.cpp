@@ -57,7 +57,7 @@ bool linearise(const Camera& camera, std::span<const Vec3> X_target, const Loss&
                ViewBlock& view) noexcept {
     view.H.setZero();
     view.g.setZero();
-    view.cost = view.weighted_squares = view.weights = 0.0;
+    view.cost = view.inlier_squares = view.inliers = 0.0;
     view.terms.resize(view.measurements.size() + view.ranges.size());
     const SE3& T = view.state.T_camera_target;
     int visible = 0;
@@ -83,8 +83,10 @@ bool linearise(const Camera& camera, std::span<const Vec3> X_target, const Loss&
         term.v.noalias() = view.share * w * (B.transpose() * weighted);
         accumulate_state(term, X, view.H, view.g);
         view.cost += view.share * loss.rho(s);
-        view.weighted_squares += view.share * w * s;
-        view.weights += view.share * w;
+        if (s <= loss.threshold) {
+            view.inlier_squares += view.share * s;
+            view.inliers += view.share;
+        }
         ++visible;
     }
     linearise_ranges(X_target, noise_factor, view);

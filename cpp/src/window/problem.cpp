@@ -64,13 +64,7 @@ double posterior_cost(Problem& problem, std::span<const Vec3> X, std::span<const
         if (!views.empty()) data += views.value(X);
     for (std::size_t k = 0; k < problem.views.size(); ++k)
         data += view_cost(problem.camera, X, loss, problem.noise_factor, T[k], problem.views[k]);
-    double prior = 0.0;
-    if (problem.prior) {
-        const auto& information = problem.prior->information;
-        const auto x = stacked(X);
-        const auto& mean = problem.prior->mean;
-        for (Eigen::Index c = 0; c < x.size(); ++c) prior += (x[c] - mean[c]) * information.col(c).dot(x - mean);
-    }
+    double prior = problem.prior ? squared_distance(*problem.prior, X) : 0.0;
     prior += problem.prior_factors.believed * length_cost(problem.lengths, X);
     return 0.5 * (data / problem.noise_factor + prior / problem.prior_factors.believed);
 }

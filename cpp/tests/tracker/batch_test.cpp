@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
+#include <numbers>
 
 #include "fairlead/refine.hpp"
 #include "window/scene.hpp"
@@ -67,6 +68,33 @@ BatchReadings readings_of(const Scene& scene, double bias_m, std::uint64_t seed)
 }
 
 }  // namespace
+
+BOOST_AUTO_TEST_CASE(outliers_of_a_few_sigma_do_not_widen_the_noise) {
+    for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+        Scene scene = make_scene(20, 10, 1.5, 4.0, 1.0, seed);
+        std::mt19937_64 random(seed + 50);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        for (std::vector<Observation>& view : scene.views)
+            for (Observation& o : view) {
+                if (unit(random) > 0.3) continue;
+                const double direction = 2.0 * std::numbers::pi * unit(random);
+                o.z += 30.0 * Vec2(std::cos(direction), std::sin(direction));
+            }
+        const Refinement found = refine(scene.camera, scene.X_told, independent_prior(scene, 1.0), stamped(scene));
+        BOOST_TEST(found.noise_factor > 0.7);
+        BOOST_TEST(found.noise_factor < 3.0);  // 9 with all of them
+    }
+}
+
+BOOST_AUTO_TEST_CASE(noise_that_was_told_wrong_is_found) {
+    for (const double told : {0.1, 0.5, 2.0}) {
+        Scene scene = make_scene(20, 20, 1.5, 2.0, 1.0, 7);
+        for (std::vector<Observation>& view : scene.views)
+            for (Observation& o : view) o.covariance *= told * told;
+        const Refinement found = refine(scene.camera, scene.X_told, independent_prior(scene, 1.0), stamped(scene));
+        BOOST_TEST(std::abs(found.noise_factor * told * told - 1.0) < 0.2);  // 3 sigma of 580 degrees of freedom
+    }
+}
 
 BOOST_AUTO_TEST_CASE(a_path_as_a_whole_makes_every_range_more_accurate_and_says_how_much) {
     double alone = 0.0;

@@ -219,6 +219,26 @@ BOOST_AUTO_TEST_CASE(wrong_intrinsics_raise_the_alarm) {
     BOOST_TEST(alarms > 40);
 }
 
+BOOST_AUTO_TEST_CASE(errors_that_stay_contradict_what_was_told_and_honest_ones_do_not) {
+    for (const double stays_px : {0.0, 5.0}) {
+        Flight flight(44);
+        std::mt19937_64 random(45);
+        std::vector<Vec3> bias;
+        for (std::size_t j = 0; j < flight.scene.X_told.size(); ++j) bias.push_back(gaussian(random, stays_px));
+        std::vector<BatchView> batch;
+        for (std::size_t k = 0; k < flight.scene.views.size(); ++k) {
+            for (Observation& o : flight.scene.views[k]) o.z += bias[static_cast<std::size_t>(o.landmark)].head<2>();
+            batch.push_back({static_cast<std::int64_t>(k), flight.scene.views[k]});
+            const Estimate e = flight.fly(k);
+            BOOST_TEST(e.ok());
+            if (k > 5) BOOST_TEST((e.reason == Reason::contradiction) == (stays_px > 0.0));
+        }
+        const Scene& scene = flight.scene;
+        for (const Estimate& e : refine(scene.camera, scene.X_told, independent_prior(scene, 1.0), batch).estimates)
+            BOOST_TEST((e.reason == Reason::contradiction) == (stays_px > 0.0));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(caller_errors_are_named_at_construction) {
     const Scene scene = make_scene(20, 1, 0.0, 1.0, 1.0, 41);
     const auto make = [&](const MatX& P0, const TrackerOptions& options) {
@@ -233,6 +253,28 @@ BOOST_AUTO_TEST_CASE(caller_errors_are_named_at_construction) {
     BOOST_CHECK_THROW(Tracker(scene.camera, std::span(scene.X_told).first(3), MatX::Identity(9, 9)),
                       std::invalid_argument);
     BOOST_CHECK_THROW(Tracker(Camera{}, scene.X_told, independent_prior(scene, 1.0)), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_CASE(a_batch_names_the_inliers_of_each_view) {
+    Scene scene = make_scene(20, 12, 1.0, 1.0, 1.0, 43);
+    std::vector<BatchView> batch;
+    for (std::size_t k = 0; k < scene.views.size(); ++k) {
+        scene.views[k][k].z += Vec2(60.0, -60.0);
+        if (k == 5) scene.views[k].resize(3);  // no pose
+        batch.push_back({static_cast<std::int64_t>(k), scene.views[k]});
+    }
+    Refinement found = refine(scene.camera, scene.X_told, independent_prior(scene, 1.0), batch);
+    const Refinement all = std::move(found);  // the lists move along
+    for (std::size_t k = 0; k < scene.views.size(); ++k) {
+        std::vector<int> expected;
+        for (const Observation& o : scene.views[k])
+            if (k != 5 && o.landmark != static_cast<int>(k)) expected.push_back(o.landmark);
+        const Estimate& e = all.estimates[k];
+        BOOST_TEST(all.inliers[k] == expected, boost::test_tools::per_element());
+        BOOST_TEST(e.inliers == static_cast<int>(expected.size()));
+        BOOST_TEST(e.inlier_landmarks.data() == all.inliers[k].data());
+        BOOST_TEST(e.inlier_landmarks.size() == expected.size());
+    }
 }
 
 BOOST_AUTO_TEST_CASE(batch_of_bad_views_keeps_the_good_ones) {

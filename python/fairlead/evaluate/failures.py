@@ -34,6 +34,8 @@ class Coverage:
     """Position in the run of the first frame with a pose; None if no frame has one."""
     reasons: tuple[tuple[str, int], ...]
     """Why there was no pose, and how often, most frequent first."""
+    doubts: tuple[tuple[str, int], ...]
+    """What the data contradict, and in how many frames that have a pose, docs/estimator.md section 8."""
 
     @property
     def rate(self) -> float:
@@ -66,6 +68,7 @@ def coverage(estimates: Sequence[Estimate]) -> Coverage:
         n_resets=estimates[-1].reset_counter - estimates[0].reset_counter if estimates else 0,
         first_ok=ok.index(True) if True in ok else None,
         reasons=tuple(reasons.most_common()),
+        doubts=tuple(Counter(estimate.reason for estimate in estimates if estimate.in_doubt).most_common()),
     )
 
 

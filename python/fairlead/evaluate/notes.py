@@ -32,6 +32,9 @@ def _of_run(evaluation: Evaluation) -> list[str]:
         sentences.append(f"the first pose came at frame {evaluation.run.frames[covered.first_ok]}.")
     if covered.reasons:
         sentences.append("no pose because of " + ", ".join(f"{why} ({count})" for why, count in covered.reasons) + ".")
+    if covered.doubts:
+        doubts = ", ".join(f"{why} ({count})" for why, count in covered.doubts)
+        sentences.append(f"the data contradict what was told of the model or of the detections: {doubts}.")
     if covered.n_resets:
         sentences.append(f"the estimator announced {covered.n_resets} jumps of the pose.")
     if truth is not None:

@@ -36,6 +36,7 @@ class RunFolder:
     def __init__(self, path: Path, record: RunRecord, target: Target, camera: Camera) -> None:
         self._path = path
         self._record = record
+        self._in_doubt = 0
         self._sinks: list[Sink] = []
         self._outcome_sinks: list[OutcomeSink] = []
         self._stack = ExitStack()
@@ -89,6 +90,7 @@ class RunFolder:
 
     def _finish(self, estimate: Estimate, timing: Timing) -> None:
         self._timing.write(timing)
+        self._in_doubt += estimate.in_doubt
         with_pose = self._record.frames_with_pose + estimate.ok
         self._record = dataclasses.replace(self._record, frames=self._record.frames + 1, frames_with_pose=with_pose)
 
@@ -104,6 +106,11 @@ class RunFolder:
     def record(self) -> RunRecord:
         """What run.json says or will say."""
         return self._record
+
+    @property
+    def frames_in_doubt(self) -> int:
+        """Frames with a pose in which the data contradict what was told."""
+        return self._in_doubt
 
     def __enter__(self) -> "RunFolder":
         return self

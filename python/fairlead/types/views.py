@@ -76,6 +76,11 @@ class Estimate:
         """Whether there is a pose: status tracking or coasting."""
         return self.status in ("tracking", "coasting")
 
+    @property
+    def in_doubt(self) -> bool:
+        """Whether there is a pose, but the data contradict what was told, docs/estimator.md section 8."""
+        return self.ok and self.reason in ("alarm", "contradiction")
+
 
 def no_pose(view: View, status: Status, reason: str) -> Estimate:
     """An estimate that says why there is none."""

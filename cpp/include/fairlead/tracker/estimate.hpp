@@ -22,7 +22,8 @@ enum class Reason {
     ambiguous,     ///< two poses explain the data about equally well; the covariance covers both
     stamp,         ///< the stamp is not later than the last one
     diverged,      ///< the joint solution failed; the last good model was kept
-    alarm          ///< residuals are far larger than the told noise and model error allow
+    alarm,         ///< residuals are far larger than the told noise and model error allow
+    contradiction  ///< the model had to be corrected by more than what was told of it allows
 };
 
 /// Noise or model error five times what was told: reason alarm.
@@ -44,10 +45,13 @@ struct Estimate {
     double reprojection_rms_px = std::numeric_limits<double>::quiet_NaN();  ///< over the inliers
     double information_gained = 0.0;        ///< half the growth of log det of the model's information [nats]
     int resets = 0;                         ///< counts jumps of the pose that are not motion
-    std::span<const int> inlier_landmarks;  ///< valid until the next update
+    std::span<const int> inlier_landmarks;  ///< valid until the next update, or as long as the Refinement
 
     [[nodiscard]] bool ok() const noexcept { return status == Status::tracking || status == Status::coasting; }
 };
+
+/// What a valid pose is to be doubted for: the factors of noise and model, and whether the model contradicts its prior.
+[[nodiscard]] Reason doubt(double noise_factor, double prior_factor, bool contradiction) noexcept;
 
 /// The same without pose and covariance: NaN.
 [[nodiscard]] Estimate without_pose(Estimate estimate, Status status, Reason reason) noexcept;

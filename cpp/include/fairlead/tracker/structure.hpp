@@ -19,7 +19,6 @@ struct Fusion {
     SE3 T_camera_target;
     Mat66 covariance = Mat66::Zero();
     double information_gained = 0.0;  ///< [nats]
-    double squares = 0.0;             ///< sum w s of this view, told units
 };
 
 /// The landmark model and all that the views said about it: a bounded window of views that are relinearised, and the
@@ -52,6 +51,7 @@ class Structure {
     [[nodiscard]] double determined_directions() const noexcept { return determined_; }
     [[nodiscard]] double noise_factor() const noexcept { return problem_.noise_factor; }
     [[nodiscard]] double prior_factor() const noexcept { return problem_.prior_factors.likely; }
+    [[nodiscard]] bool contradicts_prior() const noexcept { return window::contradicts_prior(problem_, determined_); }
     /// d range / dt [m/s] where a motion prior tells it.
     [[nodiscard]] std::optional<double> range_rate() const noexcept;
     [[nodiscard]] int views() const noexcept { return static_cast<int>(problem_.views.size()); }

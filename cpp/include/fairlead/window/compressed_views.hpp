@@ -37,7 +37,7 @@ class CompressedViews {
     [[nodiscard]] const VecX& gradient() const noexcept { return gradient_; }
     [[nodiscard]] double views() const noexcept { return views_; }  ///< sum of their shares
     [[nodiscard]] bool empty() const noexcept { return empty_; }
-    [[nodiscard]] double weights() const noexcept { return weights_; }
+    [[nodiscard]] double inliers() const noexcept { return inliers_; }  ///< the same of their inliers
 
   private:
     Slice slice_;
@@ -46,7 +46,7 @@ class CompressedViews {
     double constant_ = 0.0;
     double views_ = 0.0;
     bool empty_ = true;
-    double weights_ = 0.0;
+    double inliers_ = 0.0;
 
     MatX hessian_, A_;
     VecX gradient_, q_;

@@ -26,6 +26,11 @@ void update_noise_factor(Problem& problem, double determined) noexcept;
 void update_prior_factors(Problem& problem, const MatX& H, const VecX& g, std::span<const Vec3> X,
                           Workspace& workspace) noexcept;
 
+/// Whether the model was corrected by more than what was told of it allows: its squared distance from the prior beyond
+/// the 99.99 % point of chi-square with as many degrees of freedom as directions are determined, docs/estimator.md eq.
+/// (25).
+[[nodiscard]] bool contradicts_prior(const Problem& problem, double determined) noexcept;
+
 inline constexpr double kNoiseBelief = 20.0;
 
 }  // namespace fairlead::window

@@ -26,6 +26,9 @@ struct LandmarkPrior {
 /// stays finite.
 [[nodiscard]] LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance);
 
+/// Squared Mahalanobis distance (X - X0)^T P0^-1 (X - X0) [-]. Allocates nothing.
+[[nodiscard]] double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept;
+
 /// Standard deviation of what is held fixed, in units of the model's extent.
 inline constexpr double kFixedSigma = 1e-6;
 

@@ -59,9 +59,9 @@ struct ViewBlock {
     StateVector g = StateVector::Zero();          ///< its gradient
     StateMatrix L_inverse = StateMatrix::Zero();  ///< inverse Cholesky factor of the (damped) H
     double cost = 0.0;                            ///< sum rho(s), ranges included
-    double weighted_squares = 0.0;                ///< sum w s, over the pixels
-    double range_squares = 0.0;                   ///< the same over the ranges
-    double weights = 0.0;                         ///< sum w, over the pixels; both times `share`
+    double inlier_squares = 0.0;                  ///< sum s, over the pixels with s <= a
+    double inliers = 0.0;                         ///< their number; both times `share`
+    double range_squares = 0.0;                   ///< sum s, over the ranges
 
     explicit ViewBlock(int max_landmarks = 0) {
         measurements.reserve(static_cast<std::size_t>(max_landmarks));
