@@ -29,7 +29,7 @@ VALIDATED = 256
 """Held-out crops that are looked at after an epoch; all of them by `fairlead calibrate`."""
 MEASURED = 64
 """Crops that the batch norms of an exported network are measured on."""
-STAGES = ((0.6, 2), (0.85, 3))
+STAGES = ((0.45, 2), (0.7, 3))
 """Until which share of the course crops are shown at so many quarters of their side: cheaper by the square."""
 AVERAGED = 0.05
 """Share of the course's steps that the average of the weights reaches back, which is what is validated and kept."""
@@ -70,10 +70,11 @@ class Course:
         return self.epochs * self.epoch // self.batch
 
     def size_at(self, epoch: int) -> int:
-        """Side of the crops [px]. RTMPose takes one size."""
+        """Side of the crops [px]. RTMPose takes one size; who starts from a trained network leaves out the smallest."""
         if self.network.startswith("rtmpose"):
             return self.size
-        quarters = (quarters for share, quarters in STAGES if epoch < share * self.epochs)
+        stages = STAGES if self.start is None else STAGES[1:]
+        quarters = (quarters for share, quarters in stages if epoch < share * self.epochs)
         return self.size // 4 * next(quarters, 4)
 
 
