@@ -55,7 +55,7 @@ Refinement Batch::solve() {
 /// Covariance of the landmarks at the system that was assembled; returns the directions that the data determine.
 double Batch::measure_structure() {
     window::scale_and_add_prior(problem_, problem_.X, workspace_);
-    workspace_.llt.compute(workspace_.S);
+    if (!workspace_.cholesky.factor(workspace_.S)) return 0.0;
     const double determined = window::structure_covariance(problem_, workspace_, Sigma_);
     update_blocks();
     return determined;
