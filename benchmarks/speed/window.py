@@ -19,19 +19,23 @@ COST_TOLERANCE = 2e-9
 """Relative difference of final costs that counts as equal: what the common stopping rule leaves open."""
 OURS = "fairlead"
 
+DAMPINGS = (1e-4, 1e-5, 1e-6)
+"""First dampings that everybody may choose from."""
+
 _D = Settings()
+CORE = tuple(replace(_D, damping=damping) for damping in DAMPINGS)
 CERES = tuple(
     replace(_D, variant=variant, damping=damping)
     for variant in ("poses-eigen", "poses-lapack", "landmarks-eigen", "landmarks-lapack", "sparse")
-    for damping in (1e-4, 1e-6)
+    for damping in DAMPINGS
 )
 GTSAM = (
     *(
         replace(_D, variant=f"{ordering}/MULTIFRONTAL_CHOLESKY/identity", damping=damping)
         for ordering in ("poses", "landmarks", "COLAMD", "METIS")
-        for damping in (1e-4, 1e-6)
+        for damping in DAMPINGS
     ),
-    *(replace(_D, variant="poses/MULTIFRONTAL_CHOLESKY/diagonal", damping=damping) for damping in (1e-4, 1e-6)),
+    *(replace(_D, variant="poses/MULTIFRONTAL_CHOLESKY/diagonal", damping=damping) for damping in DAMPINGS),
     replace(_D, variant="poses/SEQUENTIAL_CHOLESKY/identity"),
     replace(_D, variant="poses/MULTIFRONTAL_SOLVER/identity"),
 )
@@ -39,9 +43,9 @@ SCIPY = (replace(_D, variant="trf-lsmr"), replace(_D, variant="lm"))
 
 
 def candidates(name: str, problem: WindowProblem) -> tuple[Settings, ...]:
-    """What is tried of a solver. Ours has one setting; what would take a peer minutes is left out."""
+    """What is tried of a solver; what would take a peer minutes is left out."""
     if name.startswith(OURS):
-        return (_D,)
+        return CORE
     if name == "Ceres":
         return CERES
     many_views = problem.views > 128

@@ -17,7 +17,7 @@ constexpr double kAcceleration = 50;  // [m/s^2]
 Chain::Chain(std::span<const Vec3> X_ref, window::Gauge gauge, int axes) : axes_(axes), slice_(X_ref, gauge) {
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref.size());
     for (MatX* matrix : {&H_XX, &yy_, &scratch_}) matrix->setZero(n, n);
-    for (MatX* matrix : {&H_Xn, &yn_, &wide_}) matrix->setZero(n, states());
+    for (ModelByState* matrix : {&H_Xn, &yn_, &wide_}) matrix->setZero(n, states());
     for (VecX* vector : {&g_X, &eta_y_}) vector->setZero(n);
     rate_t_.setZero(n, 7);
     nn_.setZero(states(), states());
@@ -40,7 +40,8 @@ void Chain::restart() noexcept {
 }
 
 void Chain::clear() noexcept {
-    for (MatX* matrix : {&yy_, &yn_}) matrix->setZero();
+    yy_.setZero();
+    yn_.setZero();
     nn_.setZero();
     eta_y_.setZero();
     eta_n_.setZero();
@@ -106,7 +107,7 @@ void Chain::linearise(const State& n) noexcept {
     slice_.pull_back(scratch_, H_XX);
 }
 
-void Chain::absorb(const MatX& A, const Eigen::Ref<const MatX>& B, const StateSquare& C, const VecX& g_X_view,
+void Chain::absorb(const MatX& A, const Eigen::Ref<const ModelByState>& B, const StateSquare& C, const VecX& g_X_view,
                    const State& g_n_view, const State& n) noexcept {
     const Mat33 G = slice_.similarity().R / slice_.similarity().s;
     const Eigen::Index size = A.rows();

@@ -18,7 +18,7 @@ Path::Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge
       tie_(static_cast<int>(X_ref.size())) {
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref.size());
     const Eigen::Index joint = 6 + chain_.states();
-    for (MatX* matrix : {&rows_t_, &Y_t_, &SigmaY_t_}) matrix->setZero(n, joint);
+    for (ModelByJoint* matrix : {&rows_t_, &Y_t_, &SigmaY_t_}) matrix->setZero(n, joint);
     A_.setZero(n, n);
     b_.setZero(n);
     n_.setZero(chain_.states());
@@ -184,7 +184,7 @@ void Path::absorb(Chain& chain, const window::ViewBlock& view, std::span<const V
     C.topLeftCorner(axes_, axes_) = (W - Z.transpose() * Z).topLeftCorner(axes_, axes_);
     c.head(axes_) = (-(W * residual_) - Z.transpose() * y).head(axes_);
     SigmaY_t_.setZero();
-    SigmaY_t_.leftCols(axes_).noalias() = -tie_.J_X_t * W.leftCols(axes_);
+    SigmaY_t_.leftCols(axes_).noalias() -= tie_.J_X_t * W.leftCols(axes_);
     SigmaY_t_.leftCols(axes_).noalias() -= Y_t_.leftCols<6>() * Z.leftCols(axes_);
     chain.absorb(A_, SigmaY_t_.leftCols(chain.states()), C, b_, c, n);
 }

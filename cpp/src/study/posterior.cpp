@@ -71,7 +71,7 @@ Answer bound(const Camera& camera, const Flight& flight) {
     window::Workspace workspace(problem.landmarks());
     if (!window::linearise(problem) || !window::assemble_data(problem, 0.0, workspace)) return answer;
     window::scale_and_add_prior(problem, problem.X, workspace);
-    workspace.llt.compute(workspace.S);
+    if (!workspace.cholesky.factor(workspace.S)) return answer;
     answer.X_covariance.resizeLike(workspace.S);
     window::structure_covariance(problem, workspace, answer.X_covariance);
     MatX Yt(workspace.S.rows(), window::ViewState::kDim);

@@ -56,7 +56,7 @@ Refinement Batch::solve() {
 /// Covariance of the landmarks at the system that was assembled, and the directions that the data determine.
 void Batch::measure_structure() {
     window::scale_and_add_prior(problem_, problem_.X, workspace_);
-    workspace_.llt.compute(workspace_.S);
+    if (!workspace_.cholesky.factor(workspace_.S)) return;
     determined_ = window::structure_covariance(problem_, workspace_, Sigma_);
     update_blocks();
 }

@@ -3,6 +3,7 @@
 // The batch on a smooth path, and the constant error of its range finder.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "batch.hpp"
@@ -56,7 +57,7 @@ void Batch::settle_on_path() {
         iterations_ += last_.iterations;
         if (!last_.ok || !window::assemble_data(problem_, 0.0, workspace_)) return;
         measure_structure();
-        const VecX step = workspace_.llt.matrixU() * (stacked(problem_.X) - before);
+        const VecX step = workspace_.cholesky.L_transposed() * (stacked(problem_.X) - before);
         last_.converged = step.squaredNorm() < kSettled;
         if (last_.converged) break;
     }
@@ -65,14 +66,12 @@ void Batch::settle_on_path() {
 
 /// Of images, readings and prior.
 double Batch::cost_without_motion() {
-    std::vector<SE3> T;
-    T.reserve(problem_.views.size());
     double on_path = 0.0;
     for (const Candidate& candidate : candidates_)
         if (candidate.on_path >= 0) on_path += cost(block(candidate), block(candidate).state.T_camera_target);
-    for (const window::ViewBlock& view : problem_.views) T.push_back(view.state.T_camera_target);
     problem_.path.reset();
-    return window::posterior_cost(problem_, problem_.X, T) + 0.5 * on_path / problem_.noise_factor;
+    if (!window::linearise(problem_)) return std::numeric_limits<double>::quiet_NaN();
+    return window::posterior_cost(problem_) + 0.5 * on_path / problem_.noise_factor;
 }
 
 void Batch::solve_again() {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fairlead/tracker/structure.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -59,7 +60,7 @@ Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX&
     const std::size_t capacity = max_views_ + 1;
     problem_.views.reserve(capacity);
     workspace_.dT.reserve(capacity);
-    workspace_.T_trial.reserve(capacity);
+    workspace_.T_before.reserve(capacity);
     descriptors_.resize(capacity);
     for (std::size_t k = 0; k < capacity; ++k) pool_.emplace_back(static_cast<int>(X0.size()));
     log_det_ = Eigen::LLT<MatX>(problem_.prior->information).matrixLLT().diagonal().array().log().sum();
@@ -108,8 +109,7 @@ bool Structure::newest_system(double mu) noexcept {
     }
     window::scale_and_add_prior(problem_, problem_.X, workspace_);
     if (on_path_ && !path_->join(view, problem_.X, problem_.noise_factor, workspace_.S, workspace_.g)) return false;
-    workspace_.llt.compute(workspace_.S);
-    return workspace_.llt.info() == Eigen::Success;
+    return workspace_.cholesky.factor(workspace_.S);
 }
 
 /// Gauss-Newton on the newest pose and the model with the loss narrowed from what the start needs to its own width
@@ -128,7 +128,7 @@ bool Structure::join_newest() noexcept {
     for (int iteration = 0; iteration < kJoinIterations; ++iteration) {
         if (!newest_system(mu)) return false;
         workspace_.dX = -workspace_.g;
-        workspace_.llt.solveInPlace(workspace_.dX);
+        workspace_.cholesky.solve_in_place(workspace_.dX);
         const double states =
             on_path_ ? path_->decrease() : (view.L_inverse * view.g).squaredNorm() / problem_.noise_factor;
         if (mu == 1.0 && states - workspace_.g.dot(workspace_.dX) < kJoinStep) return true;
@@ -197,7 +197,7 @@ bool Structure::locate_by_whole_view(Fusion& fusion) noexcept {
         locate_newest(fusion);
     }
     share = told;
-    std::copy(workspace_.X_trial.begin(), workspace_.X_trial.end(), problem_.X.begin());
+    std::copy(workspace_.X_before.begin(), workspace_.X_before.end(), problem_.X.begin());
     return joined;
 }
 
@@ -208,19 +208,19 @@ Fusion Structure::fuse(std::int64_t stamp_ns, const SE3& T_start, std::span<cons
     problem_.views.push_back(make_view(stamp_ns, T_start, observations, ranges));
     on_path_ = path_ && problem_.views.size() > kFewViews;
     if (on_path_) path_->advance(stamp_ns, problem_.X, attitude);
-    std::copy(problem_.X.begin(), problem_.X.end(), workspace_.X_trial.begin());
+    std::copy(problem_.X.begin(), problem_.X.end(), workspace_.X_before.begin());
     const bool alike = problem_.views.back().share < 1.0;
     const bool joined = (!alike || locate_by_whole_view(fusion)) && join_newest();
     const double error = joined ? nonlinearity() : 0.0;
     if (!joined || (!on_path_ && !settle_newest(error))) {
-        std::copy(workspace_.X_trial.begin(), workspace_.X_trial.end(), problem_.X.begin());
+        std::copy(workspace_.X_before.begin(), workspace_.X_before.end(), problem_.X.begin());
         retire(problem_.views.size() - 1);
         return fusion;
     }
     shares_.take();
     publish();
     if (!alike) locate_newest(fusion);
-    const double log_det = workspace_.llt.matrixLLT().diagonal().array().log().sum();
+    const double log_det = workspace_.cholesky.half_log_det();
     fusion.information_gained = std::max(0.0, log_det - log_det_);
     log_det_ = log_det;
     window::update_noise_factor(problem_, determined_);

@@ -84,8 +84,7 @@ bool Structure::relinearise(double error) noexcept {
     }
     X_data_ = X_window_ = problem_.X;
     window::scale_and_add_prior(problem_, problem_.X, workspace_);
-    workspace_.llt.compute(workspace_.S);
-    return workspace_.llt.info() == Eigen::Success;
+    return workspace_.cholesky.factor(workspace_.S);
 }
 
 MatX Structure::covariance() const {

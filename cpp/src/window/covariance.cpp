@@ -22,7 +22,7 @@ double chi_square_limit(double freedom) noexcept {
 
 double structure_covariance(const Problem& problem, Workspace& workspace, MatX& Sigma) noexcept {
     Sigma.setIdentity();
-    workspace.llt.solveInPlace(Sigma);
+    workspace.cholesky.solve_in_place(Sigma);
     const double parameters = 3.0 * problem.landmarks();
     if (!problem.prior) return parameters;
     const auto [believed, likely] = problem.prior_factors;
@@ -30,7 +30,7 @@ double structure_covariance(const Problem& problem, Workspace& workspace, MatX& 
     const double determined = std::clamp(parameters - workspace.product.trace() / believed, 0.0, parameters);
     if (likely > believed) {
         const double excess = (likely - believed) / (believed * believed);
-        workspace.S = Sigma;  // its lower triangle is in llt already
+        workspace.S = Sigma;  // is in its factor already
         Sigma.noalias() += excess * workspace.S * workspace.product;
     }
     return determined;

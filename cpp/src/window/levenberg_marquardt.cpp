@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fairlead::window {
 namespace {
@@ -13,10 +14,9 @@ bool solve(Problem& problem, double damping, Workspace& workspace) noexcept {
     if (!assemble_data(problem, damping, workspace)) return false;
     scale_and_add_prior(problem, problem.X, workspace);
     workspace.S.diagonal() += damping * workspace.D;
-    workspace.llt.compute(workspace.S);
-    if (workspace.llt.info() != Eigen::Success) return false;
+    if (!workspace.cholesky.factor(workspace.S)) return false;
     workspace.dX = -workspace.g;
-    workspace.llt.solveInPlace(workspace.dX);
+    workspace.cholesky.solve_in_place(workspace.dX);
     for (std::size_t k = 0; k < problem.views.size(); ++k)
         workspace.dT[k] = back_substitute(problem.views[k], problem.X, workspace.dX);
     return workspace.dX.allFinite();
@@ -34,33 +34,37 @@ double predicted_decrease(const Problem& problem, double damping, const Workspac
     return 0.5 * (structure + states / problem.noise_factor);
 }
 
-void take_trial(Problem& problem, Workspace& workspace) noexcept {
-    for (std::size_t j = 0; j < problem.X.size(); ++j)
-        workspace.X_trial[j] = problem.X[j] + workspace.dX.segment<3>(3 * static_cast<Eigen::Index>(j));
-    for (std::size_t k = 0; k < problem.views.size(); ++k)
-        workspace.T_trial[k] = perturb(problem.views[k].state.T_camera_target, workspace.dT[k]);
+void take_step(Problem& problem, Workspace& workspace) noexcept {
+    for (std::size_t j = 0; j < problem.X.size(); ++j) {
+        workspace.X_before[j] = problem.X[j];
+        problem.X[j] += workspace.dX.segment<3>(3 * static_cast<Eigen::Index>(j));
+    }
+    for (std::size_t k = 0; k < problem.views.size(); ++k) {
+        SE3& T = problem.views[k].state.T_camera_target;
+        workspace.T_before[k] = T;
+        T = perturb(T, workspace.dT[k]);
+    }
 }
 
-void accept(Problem& problem, Workspace& workspace) noexcept {
-    std::copy(workspace.X_trial.begin(), workspace.X_trial.end(), problem.X.begin());
+void step_back(Problem& problem, const Workspace& workspace) noexcept {
+    std::copy(workspace.X_before.begin(), workspace.X_before.end(), problem.X.begin());
     for (std::size_t k = 0; k < problem.views.size(); ++k)
-        problem.views[k].state.T_camera_target = workspace.T_trial[k];
+        problem.views[k].state.T_camera_target = workspace.T_before[k];
 }
 
-double current_cost(Problem& problem, Workspace& workspace) noexcept {
-    for (std::size_t k = 0; k < problem.views.size(); ++k)
-        workspace.T_trial[k] = problem.views[k].state.T_camera_target;
-    return posterior_cost(problem, problem.X, workspace.T_trial);
+/// E where the problem is, which is linearised there: most steps are good, and their costs come with the derivatives.
+double linearised_cost(Problem& problem) noexcept {
+    return linearise(problem) ? posterior_cost(problem) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
 LmSummary levenberg_marquardt(Problem& problem, const LmOptions& options, Workspace& workspace) noexcept {
     workspace.dT.resize(problem.views.size());
-    workspace.T_trial.resize(problem.views.size());
+    workspace.T_before.resize(problem.views.size());
     LmSummary summary;
-    if (!linearise(problem)) return summary;
-    summary.initial_cost = summary.cost = current_cost(problem, workspace);
+    summary.initial_cost = summary.cost = linearised_cost(problem);
+    if (!std::isfinite(summary.cost)) return summary;
     double damping = options.initial_damping;
     double growth = 2.0;
     while (summary.iterations < options.max_iterations) {
@@ -71,26 +75,27 @@ LmSummary levenberg_marquardt(Problem& problem, const LmOptions& options, Worksp
             summary.converged = true;
             break;
         }
-        double gain = -1.0;
-        double trial_cost = 0.0;
+        double cost = summary.cost;
         if (solved) {
-            take_trial(problem, workspace);
-            trial_cost = posterior_cost(problem, workspace.X_trial, workspace.T_trial);
-            gain = std::isfinite(trial_cost) ? (summary.cost - trial_cost) / predicted : -1.0;
+            take_step(problem, workspace);
+            cost = linearised_cost(problem);
         }
-        if (gain > 0.0) {
-            accept(problem, workspace);
-            summary.cost = trial_cost;
+        if (cost < summary.cost) {
+            const double gain = (summary.cost - cost) / predicted;
+            summary.cost = cost;
             damping *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3));
             growth = 2.0;
-            if (!linearise(problem)) return summary;
-        } else {
-            damping *= growth;
-            growth *= 2.0;
-            if (damping > 1e12) break;
+            continue;
         }
+        if (solved) {
+            step_back(problem, workspace);
+            if (!linearise(problem)) return summary;
+        }
+        damping *= growth;
+        growth *= 2.0;
+        if (damping > 1e12) break;
     }
-    summary.ok = std::isfinite(summary.cost);
+    summary.ok = true;
     return summary;
 }
 

@@ -12,12 +12,12 @@ double hidden_cost(const Loss& loss) noexcept {
     return std::isinf(loss.threshold) ? std::numeric_limits<double>::infinity() : 2.0 * loss.threshold;
 }
 
-/// H += E^T M E and g += E^T v with E = [I, -hat(X)].
+/// H += E^T M E, but for its upper right block, and g += E^T v with E = [I, -hat(X)].
 void accumulate_state(const PointTerm& term, const Vec3& X, StateMatrix& H, StateVector& g) noexcept {
-    const Mat33 XM = so3::hat(X) * term.M;  // -(E^T M) lower half has the sign of hat(X) M
+    const Mat33 MX = so3::times_hat(term.M, X);
     H.topLeftCorner<3, 3>() += term.M;
-    H.bottomLeftCorner<3, 3>() += XM;
-    H.bottomRightCorner<3, 3>() -= XM * so3::hat(X);
+    H.bottomLeftCorner<3, 3>() -= MX.transpose();
+    H.bottomRightCorner<3, 3>() += so3::times_hat(MX.transpose(), X);
     g.head<3>() += term.v;
     g.tail<3>() += X.cross(term.v);
 }
@@ -80,7 +80,7 @@ bool linearise(const Camera& camera, std::span<const Vec3> X_target, const Loss&
         const Mat23 SB = view.share * w * (measurement.information * B);
         term.landmark = measurement.landmark;
         term.M.noalias() = B.transpose() * SB;
-        term.v.noalias() = view.share * w * (B.transpose() * weighted);
+        term.v.noalias() = SB.transpose() * r;
         accumulate_state(term, X, view.H, view.g);
         view.cost += view.share * loss.rho(s);
         if (s <= loss.threshold) {

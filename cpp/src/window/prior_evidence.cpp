@@ -38,7 +38,7 @@ double first_above(const Curve& curve, double level) {
 }  // namespace
 
 PriorEvidence::PriorEvidence(int landmarks)
-    : S_(3 * landmarks, 3 * landmarks), y_(3 * landmarks), llt_(3 * landmarks) {}
+    : S_(3 * landmarks, 3 * landmarks), y_(3 * landmarks), cholesky_(3 * landmarks) {}
 
 PriorFactors PriorEvidence::evaluate(const LandmarkPrior& prior, const MatX& A, const VecX& b) noexcept {
     Curve evidence;
@@ -47,12 +47,11 @@ PriorFactors PriorEvidence::evaluate(const LandmarkPrior& prior, const MatX& A, 
         const double log_q = log_factor(static_cast<double>(i));
         S_ = std::exp(-log_q) * prior.information;
         S_ += A;
-        llt_.compute(S_);
+        if (!cholesky_.factor(S_)) return {};
         y_ = b;
-        llt_.matrixL().solveInPlace(y_);
-        evidence[i] = 0.5 * y_.squaredNorm() - llt_.matrixLLT().diagonal().array().log().sum() -
-                      0.5 * static_cast<double>(b.size()) * log_q;
-        if (llt_.info() != Eigen::Success || !std::isfinite(evidence[i])) return {};
+        cholesky_.L().solveInPlace(y_);
+        evidence[i] = 0.5 * y_.squaredNorm() - cholesky_.half_log_det() - 0.5 * static_cast<double>(b.size()) * log_q;
+        if (!std::isfinite(evidence[i])) return {};
         posterior[i] = evidence[i] - 0.5 * kPriorBelief * (log_q + std::exp(-log_q));
     }
     const double level = *std::max_element(evidence.begin(), evidence.end()) - kCredibleNats;

@@ -49,23 +49,21 @@ void add_lengths(std::span<const LengthMeasurement> lengths, std::span<const Vec
 
 Workspace::Workspace(int landmarks)
     : eliminator(landmarks),
-      llt(3 * landmarks),
+      cholesky(3 * landmarks),
       evidence(landmarks),
-      X_trial(static_cast<std::size_t>(landmarks), Vec3::Zero()) {
+      X_before(static_cast<std::size_t>(landmarks), Vec3::Zero()) {
     product.setZero(3 * landmarks, 3 * landmarks);
     S.setZero(3 * landmarks, 3 * landmarks);
     for (VecX* vector : {&g, &dX, &D, &step}) vector->setZero(3 * landmarks);
 }
 
-double posterior_cost(Problem& problem, std::span<const Vec3> X, std::span<const SE3> T) noexcept {
-    const Loss loss = problem.told_loss();
-    double data = problem.path ? problem.path->value(X) : 0.0;
+double posterior_cost(Problem& problem) noexcept {
+    double data = problem.path ? problem.path->value(problem.X) : 0.0;
     for (CompressedViews& views : problem.compressed)
-        if (!views.empty()) data += views.value(X);
-    for (std::size_t k = 0; k < problem.views.size(); ++k)
-        data += view_cost(problem.camera, X, loss, problem.noise_factor, T[k], problem.views[k]);
-    double prior = problem.prior ? squared_distance(*problem.prior, X) : 0.0;
-    prior += problem.prior_factors.believed * length_cost(problem.lengths, X);
+        if (!views.empty()) data += views.value(problem.X);
+    for (const ViewBlock& view : problem.views) data += view.cost;
+    double prior = problem.prior ? squared_distance(*problem.prior, problem.X) : 0.0;
+    prior += problem.prior_factors.believed * length_cost(problem.lengths, problem.X);
     return 0.5 * (data / problem.noise_factor + prior / problem.prior_factors.believed);
 }
 
@@ -92,7 +90,7 @@ bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexc
     for (const CompressedViews& views : problem.compressed)
         if (!views.empty()) add(views, workspace);
     if (problem.path) add(*problem.path, workspace);
-    return workspace.S.allFinite();
+    return workspace.S.diagonal().allFinite();  // no element off the diagonal is larger
 }
 
 void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Workspace& workspace) noexcept {

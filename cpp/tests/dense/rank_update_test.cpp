@@ -18,8 +18,7 @@ BOOST_AUTO_TEST_CASE(subtracts_the_product_whatever_the_size) {
         MatX expected = S;
         for (int turn = 0; turn < 2; ++turn) {  // the second finds it empty again
             const MatX Y = MatX::NullaryExpr(rows, columns, [&] { return normal(random); });
-            for (int r = 0; r < rows; ++r)
-                for (int c = 0; c < columns; ++c) update.at(r, c) = Y(r, c);
+            for (int r = 0; r < rows; ++r) update.add(r, Y.row(r));
             update.take(columns);
             BOOST_TEST(update.room() == 2);
             update.subtract_from(S);

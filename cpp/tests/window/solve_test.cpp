@@ -11,15 +11,15 @@ using namespace fairlead::testing;
 
 namespace {
 
-double cost_at(window::Problem& problem, const VecX& d) {
-    std::vector<Vec3> X = problem.X;
-    std::vector<SE3> T;
+double cost_at(window::Problem problem, const VecX& d) {
     const Eigen::Index n = 3 * problem.landmarks();
-    for (std::size_t j = 0; j < X.size(); ++j) X[j] += d.segment<3>(3 * static_cast<Eigen::Index>(j));
-    for (std::size_t k = 0; k < problem.views.size(); ++k)
-        T.push_back(
-            perturb(problem.views[k].state.T_camera_target, d.segment<6>(n + 6 * static_cast<Eigen::Index>(k))));
-    return window::posterior_cost(problem, X, T);
+    for (std::size_t j = 0; j < problem.X.size(); ++j) problem.X[j] += d.segment<3>(3 * static_cast<Eigen::Index>(j));
+    for (std::size_t k = 0; k < problem.views.size(); ++k) {
+        SE3& T = problem.views[k].state.T_camera_target;
+        T = perturb(T, d.segment<6>(n + 6 * static_cast<Eigen::Index>(k)));
+    }
+    BOOST_TEST_REQUIRE(window::linearise(problem));
+    return window::posterior_cost(problem);
 }
 
 /// Gradient of E by central differences over all landmarks and poses.

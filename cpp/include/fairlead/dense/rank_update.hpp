@@ -2,32 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
+#include "fairlead/dense/panels.hpp"
 #include "fairlead/geometry/types.hpp"
 
 namespace fairlead::dense {
 
-/// The columns of a rank update S -= Y Y^T, gathered a few at a time: where most of the time of a solve goes.
-///
-/// Y is kept in panels of eight rows, column after column, so that the product reads memory in order. It uses AVX2
-/// where the processor has it, which is asked at run time: the default build stays portable and is as fast as one made
-/// for the machine.
+/// The columns of a rank update S -= Y Y^T, gathered a few at a time: where most of the time of a solve goes. The
+/// default build stays portable and is as fast as one made for the machine.
 class RankUpdate {
   public:
-    static constexpr int kPanel = 8;
+    RankUpdate(int rows, int capacity) : rows_(rows), Y_(rows, capacity) {}
 
-    RankUpdate(int rows, int capacity);
+    [[nodiscard]] int room() const noexcept { return Y_.columns() - columns_; }
 
-    [[nodiscard]] int room() const noexcept { return capacity_ - columns_; }
-
-    /// Element of the column that comes `offset` after those already taken.
-    double& at(int row, int offset) noexcept {
-        const auto panel = static_cast<std::size_t>(row / kPanel);
-        const auto column = static_cast<std::size_t>(columns_) + static_cast<std::size_t>(offset);
-        return Y_[(panel * static_cast<std::size_t>(capacity_) + column) * kPanel +
-                  static_cast<std::size_t>(row % kPanel)];
+    /// Adds to a row, in the columns that come after those already taken.
+    template <typename Row>
+    void add(int row, const Eigen::MatrixBase<Row>& values) noexcept {
+        double* element = Y_.at(row, columns_);
+        for (Eigen::Index c = 0; c < values.size(); ++c, element += Panels::kRows) *element += values[c];
     }
     void take(int columns) noexcept { columns_ += columns; }
 
@@ -35,9 +27,9 @@ class RankUpdate {
     void subtract_from(MatX& S) noexcept;
 
   private:
-    int rows_, capacity_;
+    int rows_;
     int columns_ = 0;
-    std::vector<double> Y_;
+    Panels Y_;
 };
 
 }  // namespace fairlead::dense

@@ -13,6 +13,16 @@ namespace fairlead::so3 {
     return A;
 }
 
+/// A hat(b), column by column: nothing is multiplied by the zeros.
+template <typename Derived>
+[[nodiscard]] auto times_hat(const Eigen::MatrixBase<Derived>& A, const Vec3& b) noexcept {
+    Eigen::Matrix<double, Derived::RowsAtCompileTime, 3> product;
+    product.col(0) = b.z() * A.col(1) - b.y() * A.col(2);
+    product.col(1) = b.x() * A.col(2) - b.z() * A.col(0);
+    product.col(2) = b.y() * A.col(0) - b.x() * A.col(1);
+    return product;
+}
+
 /// Exp: rotation by |phi| about phi, Rodrigues' formula, CONVENTIONS.md eq. (4); exact series near zero.
 [[nodiscard]] Mat33 exp(const Vec3& phi) noexcept;
 

@@ -34,16 +34,16 @@ class Chain {
     [[nodiscard]] State motion_gradient(const State& n) const noexcept;
     [[nodiscard]] const StateSquare& motion_information() const noexcept { return nn_; }
     /// d^2 E / du dn, in the slice's coordinates.
-    [[nodiscard]] const MatX& coupling() const noexcept { return yn_; }
+    [[nodiscard]] const ModelByState& coupling() const noexcept { return yn_; }
     /// The same with respect to X, at the model that was set.
-    void pull_back(MatX& coupling) noexcept { slice_.pull_back(coupling); }
+    void pull_back(ModelByState& coupling) noexcept { slice_.pull_back(coupling); }
 
     /// Derivatives at that model and n; both triangles.
     void linearise(const State& n) noexcept;
 
     /// Takes in a view with its pose eliminated: A (dX dX), B (dX dn), C (dn dn) and gradients at that model and n.
-    void absorb(const MatX& A, const Eigen::Ref<const MatX>& B, const StateSquare& C, const VecX& g_X, const State& g_n,
-                const State& n) noexcept;
+    void absorb(const MatX& A, const Eigen::Ref<const ModelByState>& B, const StateSquare& C, const VecX& g_X,
+                const State& g_n, const State& n) noexcept;
 
     /// The shape alone, motion integrated out.
     void marginal(MatX& Lambda, VecX& eta) noexcept;
@@ -52,7 +52,8 @@ class Chain {
     [[nodiscard]] const window::Slice& slice() const noexcept { return slice_; }
     [[nodiscard]] const window::GaugeBasis& gauge_rate_t() const noexcept { return rate_t_; }
 
-    MatX H_XX, H_Xn;  ///< written by linearise()
+    MatX H_XX;  ///< written by linearise(), like the next two
+    ModelByState H_Xn;
     VecX g_X;
 
   private:
@@ -62,11 +63,13 @@ class Chain {
     int axes_;
     window::Slice slice_;
     window::GaugeBasis rate_t_;
-    MatX yy_, yn_;
+    MatX yy_;
+    ModelByState yn_;
     StateSquare nn_;
     VecX eta_y_;
     State eta_n_;
-    MatX scratch_, wide_;
+    MatX scratch_;
+    ModelByState wide_;
 };
 
 }  // namespace fairlead::motion

@@ -66,6 +66,7 @@ class Path {
     static constexpr double kMaxInterval = 10.0;  ///< [s] without a view after which the motion begins anew
     using Joint = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoint, 1>;
     using JointSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoint, kMaxJoint>;
+    using ModelByJoint = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Eigen::Dynamic, kMaxJoint>;
 
     struct Past {
         window::ViewBlock view;
@@ -93,7 +94,7 @@ class Path {
     /// What is known besides of the motion of a view that is eliminated: information, and coupling to X.
     struct Later {
         StateSquare nn;
-        MatX Xn;
+        ModelByState Xn;
     };
     [[nodiscard]] bool eliminate(const Chain& chain, const window::ViewBlock& view, std::span<const Vec3> X,
                                  double noise_factor, const State& n, const Later* later, MatX& S, VecX& g) noexcept;
@@ -129,8 +130,9 @@ class Path {
     Vec3 residual_ = Vec3::Zero();  ///< of the tie
     JointSquare L_inverse_;
     Joint y_;
-    MatX rows_t_;  ///< dX d(pose, motion)
-    MatX Y_t_, SigmaY_t_, A_;
+    ModelByJoint rows_t_;  ///< dX d(pose, motion)
+    ModelByJoint Y_t_, SigmaY_t_;
+    MatX A_;
     VecX b_;
 };
 

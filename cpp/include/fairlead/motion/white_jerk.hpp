@@ -10,6 +10,8 @@ namespace fairlead::motion {
 inline constexpr int kMaxState = 9;
 using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxState, 1>;
 using StateSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxState, kMaxState>;
+/// Coupling of the model with it; products of its transpose are bounded and stay off the heap.
+using ModelByState = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Eigen::Dynamic, kMaxState>;
 
 /// (p, v, a) after dt of constant acceleration, docs/motion.md eq. (2).
 [[nodiscard]] StateSquare transition(double dt, int axes);

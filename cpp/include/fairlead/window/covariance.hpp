@@ -7,8 +7,8 @@
 namespace fairlead::window {
 
 /// Covariance of all landmarks with every view's state integrated out, for a prior that was believed with one factor
-/// and is likely to have another, docs/estimator.md eq. (17); workspace.llt must hold S undamped. Returns the number of
-/// directions of the model that the data determine, eq. (14).
+/// and is likely to have another, docs/estimator.md eq. (17); workspace.cholesky must hold that of S undamped. Returns
+/// the number of directions of the model that the data determine, eq. (14).
 double structure_covariance(const Problem& problem, Workspace& workspace, MatX& Sigma) noexcept;
 
 /// Covariance of a view's xi with the structure's uncertainty in it, docs/estimator.md eq. (10), f the pose factor:

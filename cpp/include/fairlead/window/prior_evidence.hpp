@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
-
+#include "fairlead/dense/cholesky.hpp"
 #include "fairlead/window/landmark_prior.hpp"
 
 namespace fairlead::window {
@@ -27,7 +26,7 @@ class PriorEvidence {
   private:
     MatX S_;
     VecX y_;
-    Eigen::LLT<MatX> llt_;
+    dense::Cholesky cholesky_;
 };
 
 /// Degrees of freedom with which the told P0 is believed.

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <optional>
 #include <vector>
 
+#include "fairlead/dense/cholesky.hpp"
 #include "fairlead/robust/loss.hpp"
 #include "fairlead/window/compressed_views.hpp"
 #include "fairlead/window/eliminate.hpp"
@@ -50,16 +50,16 @@ struct Workspace {
     Eliminator eliminator;
     MatX S;  ///< 3N x 3N, lower triangle
     VecX g, dX, D, step;
-    Eigen::LLT<MatX> llt;
-    MatX product;  ///< scratch
+    dense::Cholesky cholesky;  ///< of S
+    MatX product;              ///< scratch
     PriorEvidence evidence;
-    std::vector<Vec3> X_trial;
     std::vector<StateVector> dT;
-    std::vector<SE3> T_trial;
+    std::vector<Vec3> X_before;  ///< where the last step was taken from
+    std::vector<SE3> T_before;
 };
 
-/// Value of E at (X, T).
-[[nodiscard]] double posterior_cost(Problem& problem, std::span<const Vec3> X, std::span<const SE3> T) noexcept;
+/// Value of E at the current estimate, where its views are linearised.
+[[nodiscard]] double posterior_cost(Problem& problem) noexcept;
 
 /// Linearises all views and compressed views at the current estimate. False if a view has become unusable.
 [[nodiscard]] bool linearise(Problem& problem) noexcept;
