@@ -5,7 +5,7 @@
 import numpy as np
 
 from fairlead import geometry
-from fairlead.evaluate.design_effect import pose_jacobian
+from fairlead.design_effect import pose_jacobian
 from fairlead.types import Camera
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
-from fairlead.evaluate.design_effect import design_effect, pose_jacobian
+from fairlead.design_effect import design_effect, pose_jacobian
 from fairlead.reproduce.sequences import Sequence
 from fairlead.types import View
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fairlead.evaluate.design_effect import design_effect
+from fairlead.design_effect import design_effect
 from fairlead.io.network_card import Calibration
 from fairlead.train.calibration import covariances
 from fairlead.train.findings import Findings

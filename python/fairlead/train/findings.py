@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 import torch
 
-from fairlead.evaluate.design_effect import pose_jacobian
+from fairlead.design_effect import pose_jacobian
 from fairlead.progress import Progress
 from fairlead.train.lesson import Lesson
 from fairlead.train.pictures import Picture, seen_from

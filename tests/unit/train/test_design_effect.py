@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fairlead import geometry
-from fairlead.evaluate.design_effect import pose_jacobian
+from fairlead.design_effect import pose_jacobian
 from fairlead.geometry import exp_se3
 from fairlead.io.network_card import Calibration
 from fairlead.train.alike import measured_design_effect
