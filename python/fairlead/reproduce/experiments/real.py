@@ -121,12 +121,13 @@ def _network_table(networks: list[Path], images: Path, context: Context) -> Tabl
     pen_folder = shipped_data("marker_pen")
     target, camera = load_target(pen_folder / "target.toml"), load_camera(pen_folder / "camera.yaml")
     corners = list(read_views(pen_folder / "observations.csv"))
-    rows: list[dict[str, Cell]] = [{"label": "tags", **vars(judge_pen(corners, corners, target, camera))}]
+    tags = vars(judge_pen(corners, corners, target, camera))
+    rows: list[dict[str, Cell]] = [{"detector": "tags", "label": "tags", **tags}]
     for network in networks:
         output = context.cache / "pen" / f"{network.stem}-{hashlib.sha256(network.read_bytes()).hexdigest()[:12]}"
         views = look(network, images, pen_folder, output, context.progress)
         label = f"{DETECTORS.get(network.stem, network.stem)}, trained on renders"
-        rows.append({"label": label, **vars(judge_pen(views, corners, target, camera))})
+        rows.append({"detector": network.stem, "label": label, **vars(judge_pen(views, corners, target, camera))})
     return Table(
         name="real_pen_networks", title="Networks on the pen", columns=_NETWORKS, rows=rows, note=_NETWORKS_NOTE
     )
