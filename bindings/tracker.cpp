@@ -65,7 +65,7 @@ nb::tuple refine_views(const Camera& camera, const Rows3& X0, const Square& P0, 
     return nb::make_tuple(estimates, to_array(refinement.X), to_array(refinement.covariance), refinement.noise_factor,
                           refinement.prior_factor, refinement.prior_factor_believed, refinement.cost,
                           refinement.iterations, refinement.converged, refinement.ranges_believed,
-                          refinement.ranges_refused, refinement.range_bias_m, refinement.range_bias_sigma_m);
+                          refinement.ranges_refused, refinement.range_bias.bias_m, refinement.range_bias.sigma_m);
 }
 
 window::Problem make_problem(const Camera& camera, const Rows3& X, const Rows44& T, const Indices& view_index,
@@ -107,8 +107,9 @@ nb::tuple solve_window(const Camera& camera, const Rows3& X, const Rows44& T, co
     window::Problem problem = make_problem(camera, X, T, view_index, landmarks, pixels, covariances, loss_threshold);
     if (!prior_information.is_none()) {
         const std::vector<Vec3> mean = to_points(nb::cast<Rows3>(prior_mean));
-        problem.prior = window::LandmarkPrior{Eigen::Map<const VecX>(mean.front().data(), 3 * problem.landmarks()),
-                                              to_matrix(nb::cast<Square>(prior_information))};
+        problem.prior =
+            window::LandmarkPrior{Eigen::Map<const VecX>(mean.front().data(), 3 * problem.landmarks()),
+                                  to_matrix(nb::cast<Square>(prior_information)), VecX::Zero(3 * problem.landmarks())};
         if (problem.prior->information.rows() != 3 * problem.landmarks() || mean.size() != problem.X.size())
             throw std::invalid_argument(
                 "prior: expected the mean (n, 3) and the information (3n, 3n) of all landmarks");
@@ -146,13 +147,13 @@ void bind_options(nb::module_& m) {
         .def_rw("correlation_log_range", &TrackerOptions::correlation_log_range)
         .def_rw("design_effect", &TrackerOptions::design_effect)
         .def_rw("range_to_origin", &TrackerOptions::range_to_origin)
+        .def_rw("range_bias_sigma_m", &TrackerOptions::range_bias_sigma_m)
         .def_rw("seed", &TrackerOptions::seed);
 }
 
 void bind_readings(nb::module_& m) {
     nb::class_<BatchReadings>(m, "BatchReadings")
         .def(nb::init<>())
-        .def_rw("range_bias_sigma_m", &BatchReadings::range_bias_sigma_m)
         .def("add_length", [](BatchReadings& readings, int a, int b, double length_m,
                               double sigma_m) { readings.lengths.push_back({a, b, length_m, sigma_m}); })
         .def("add_range", [](BatchReadings& readings, std::int64_t stamp_ns, double range_m, double sigma_m,
@@ -197,6 +198,8 @@ void bind_tracker(nb::module_& m) {
         .def_prop_ro("determined_directions", &Tracker::determined_directions)
         .def_prop_ro("ranges_believed", &Tracker::ranges_believed)
         .def_prop_ro("ranges_refused", &Tracker::ranges_refused)
+        .def_prop_ro("range_bias",
+                     [](const Tracker& t) { return nb::make_tuple(t.range_bias().bias_m, t.range_bias().sigma_m); })
         .def_prop_ro("views_in_window", &Tracker::views_in_window);
     m.attr("ORIGIN") = Tracker::kOrigin;
     m.def("refine", &refine_views);

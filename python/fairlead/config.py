@@ -38,6 +38,8 @@ class InputConfig(ImageOptions):
     """range.csv: readings of a range finder (method map)."""
     attitude: Path | None = None
     """attitude.csv: the camera's attitude, for the motion kind world (method map)."""
+    range_bias_sigma_m: float = 0.0
+    """What the range finder may always read too much, 1 sigma [m]; above 0 it is estimated (method map)."""
     min_coverage: float = 0.5
     """Exit status 1 if a smaller share of the frames got a pose [-]."""
 
@@ -46,6 +48,10 @@ class InputConfig(ImageOptions):
             raise UsageError(f"--fps: expected a positive number of frames per second, got {self.fps}")
         if not 0.0 <= self.min_coverage <= 1.0:
             raise UsageError(f"--min-coverage: expected a share between 0 and 1, got {self.min_coverage}")
+        if not 0.0 <= self.range_bias_sigma_m < float("inf"):
+            raise UsageError(f"--range-bias-sigma-m: expected zero or more metres, got {self.range_bias_sigma_m}")
+        if self.range_bias_sigma_m > 0.0 and self.range is None:
+            raise UsageError("--range-bias-sigma-m: expected --range too")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,16 +65,6 @@ class TrackConfig(InputConfig, SinkOptions):
 @dataclass(frozen=True, kw_only=True)
 class RefineConfig(InputConfig):
     """Refine landmarks and poses of a whole flight in one batch."""
-
-    range_bias_sigma_m: float = 0.0
-    """What the range finder may be off by, always the same, 1 sigma [m]; above 0 it is estimated."""
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not 0.0 <= self.range_bias_sigma_m < float("inf"):
-            raise UsageError(f"--range-bias-sigma-m: expected zero or more metres, got {self.range_bias_sigma_m}")
-        if self.range_bias_sigma_m > 0.0 and self.range is None:
-            raise UsageError("--range-bias-sigma-m: expected --range too")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,6 +24,7 @@ from fairlead.progress import ProgressFactory, silent
 from fairlead.sinks.run_folder import WRITTEN, RunFolder
 from fairlead.sinks.sink import Outcome
 from fairlead.sources.readings import SensorReadings
+from fairlead.sources.source import ViewSource
 from fairlead.sources.video import without_password
 from fairlead.tracker import Refinement, Tracker, TrackerOptions
 from fairlead.tracker import refine as refine_batch
@@ -45,7 +46,7 @@ class RunSummary:
     report: Path | None
     """Where truth was given."""
     range_bias: tuple[float, float] | None = None
-    """Constant error of the range finder and its standard deviation [m], where it was looked for."""
+    """What the range finder always reads too much and its standard deviation [m], where it was looked for."""
 
     @property
     def coverage(self) -> float:
@@ -62,9 +63,7 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
     target, camera = _load(config)
     source = open_views(config, target, camera)
     readings = sensor_readings(config, target)
-    options = told_correlation(source, tracker_options(config.options))
-    if any(reading.landmark is None for reading in readings.ranges):
-        options = replace(options, range_to_origin=True)
+    options = told_options(config, source, readings)
     estimator = make_estimator(config, options, target, camera)
     views_seen = timed_views(source, config.source)
     record = _record("track", config, options if config.method == "map" else None)
@@ -86,7 +85,13 @@ def track(config: TrackConfig, progress: ProgressFactory = silent) -> RunSummary
                     advance(source.work(seen.view))
         finally:
             folder.count_dropped(let_go(source))
-    return _finish(config, folder)
+    summary = _finish(config, folder)
+    return _with_bias(summary, estimator.range_bias) if isinstance(estimator, Tracker) else summary
+
+
+def _with_bias(summary: RunSummary, bias: tuple[float, float]) -> RunSummary:
+    """The summary with what the range finder always reads too much, where it was looked for."""
+    return replace(summary, range_bias=bias if bias[1] > 0.0 else None)
 
 
 def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSummary:
@@ -94,7 +99,7 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
     target, camera = _load(config)
     source = open_views(config, target, camera)
     readings = sensor_readings(config, target)
-    options = told_correlation(source, tracker_options(config.options))
+    options = told_options(config, source, readings)
     views_seen = timed_views(source, config.source)
     with RunFolder(config.output, _record("refine", config, options), target, camera) as folder:
         folder.open_sinks(None)
@@ -106,13 +111,13 @@ def refine(config: RefineConfig, progress: ProgressFactory = silent) -> RunSumma
                 views.append(seen.view)
                 timings.append(_timing(seen, float("nan")))
                 advance(source.work(seen.view))
-        batch = partial(refine_batch, views, target, camera, options, range_bias_sigma_m=config.range_bias_sigma_m)
+        batch = partial(refine_batch, views, target, camera, options)
         refinement = _solve(config, partial(batch, ranges=readings.ranges, attitudes=readings.attitudes))
         for estimate, timing in zip(refinement.estimates, timings, strict=True):
             folder.write(estimate, timing)
         folder.save_model(refinement.model)
-    bias = (refinement.range_bias_m, refinement.range_bias_sigma_m) if config.range_bias_sigma_m > 0.0 else None
-    return replace(_finish(config, folder), range_bias=bias)
+    summary = _finish(config, folder)
+    return _with_bias(summary, (refinement.range_bias_m, refinement.range_bias_sigma_m))
 
 
 def _solve(config: RefineConfig, batch: Callable[[], Refinement]) -> Refinement:
@@ -183,6 +188,16 @@ def _estimator(config: TrackConfig, options: TrackerOptions, target: Target, cam
     from fairlead.baselines.epnp import EpnpTracker
 
     return EpnpTracker(target, camera)
+
+
+def told_options(config: InputConfig, source: ViewSource, readings: SensorReadings) -> TrackerOptions:
+    """Those of the file, what the detector says of its errors, and what the readings need."""
+    options = told_correlation(source, tracker_options(config.options))
+    if any(reading.landmark is None for reading in readings.ranges):
+        options = replace(options, range_to_origin=True)
+    if config.range_bias_sigma_m > 0.0:
+        options = replace(options, range_bias_sigma_m=config.range_bias_sigma_m)
+    return options
 
 
 def tracker_options(path: Path | None) -> TrackerOptions:

@@ -3,6 +3,7 @@
 """`fairlead track|refine --range --attitude`: what other sensors say is used, and bad files end in one line."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -71,26 +72,30 @@ def test_ranges_and_attitudes_of_a_flight_are_used(flight: Path, tmp_path: Path)
     assert range_error(flight, tmp_path / "ranges") < range_error(flight, tmp_path / "images")
 
 
-def test_a_whole_flight_uses_them_too_and_finds_a_constant_error(
-    flight: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_whole_flight_uses_them_too(flight: Path, tmp_path: Path) -> None:
     sensors = ("--range", str(flight / "range.csv"), "--attitude", str(flight / "attitude.csv"))
     assert refined(flight, tmp_path / "ranges", *sensors) == 0
     assert range_error(flight, tmp_path / "ranges") < 1.5
+
+
+@pytest.mark.parametrize("verb", [tracked, refined])
+def test_what_a_range_finder_always_reads_too_much_is_found(
+    flight: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], verb: Callable[..., int]
+) -> None:
     lines = (flight / "range.csv").read_text(encoding="utf-8").splitlines()
     columns = [line.split(",") for line in lines[1:]]
     off = [",".join([stamp, f"{float(r) + 4.0}", *rest]) for stamp, r, *rest in columns]
     (tmp_path / "off.csv").write_text("\n".join([lines[0], *off]) + "\n", encoding="utf-8")
     capsys.readouterr()
     words = ("--range", str(tmp_path / "off.csv"), "--range-bias-sigma-m", "4")
-    assert refined(flight, tmp_path / "off", *words) == 0
+    assert verb(flight, tmp_path / "off", *words) == 0
     said = re.search(r"range finder off by ([+-][\d.]+) ± ([\d.]+) m", capsys.readouterr().out)
     assert said is not None
     bias, sigma = float(said[1]), float(said[2])
     assert 0.0 < sigma <= 4.0
     assert abs(bias - 4.0) < 3.3 * sigma  # 99.9 %
     with pytest.raises(SystemExit, match="2"):
-        refined(flight, tmp_path / "bad", "--range-bias-sigma-m", "4")
+        verb(flight, tmp_path / "bad", "--range-bias-sigma-m", "4")
 
 
 @pytest.mark.parametrize(

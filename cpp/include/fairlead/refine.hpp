@@ -7,6 +7,7 @@
 
 #include "fairlead/motion/tie.hpp"
 #include "fairlead/pnp/observation.hpp"
+#include "fairlead/tracker/entries.hpp"
 #include "fairlead/tracker/estimate.hpp"
 #include "fairlead/tracker/options.hpp"
 #include "fairlead/window/problem.hpp"
@@ -30,7 +31,6 @@ struct BatchReadings {
     };
     std::vector<window::LengthMeasurement> lengths;
     std::vector<Range> ranges;
-    double range_bias_sigma_m = 0.0;  ///< what the range finder may be off by, always the same, one sigma; 0: nothing
     std::vector<Attitude> attitudes;
 };
 
@@ -51,8 +51,7 @@ struct Refinement {
     int iterations = 0;
     bool converged = false;
     int ranges_believed = 0, ranges_refused = 0;
-    double range_bias_m = 0.0;        ///< constant error of the range finder, if one was to be looked for
-    double range_bias_sigma_m = 0.0;  ///< one standard deviation of it
+    RangeBias range_bias;  ///< if the options ask for it
 };
 
 /// All views of a flight in one maximum a posteriori estimate of landmarks and poses, docs/estimator.md section 5. The

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "fairlead/pnp/observation.hpp"
+#include "fairlead/tracker/entries.hpp"
 #include "fairlead/tracker/estimate.hpp"
 #include "fairlead/tracker/options.hpp"
 #include "fairlead/window/observability.hpp"
@@ -58,6 +59,8 @@ class Tracker {
     [[nodiscard]] double determined_directions() const noexcept;
     /// What a view from this pose would add to what is known of the model [nats].
     [[nodiscard]] double predicted_gain(const SE3& T_camera_target, double sigma_px) const;
+    /// What the range finder always reads too much, as far as known; the option range_bias_sigma_m must be on.
+    [[nodiscard]] RangeBias range_bias() const noexcept;
     [[nodiscard]] int views_in_window() const noexcept;
     [[nodiscard]] int ranges_believed() const noexcept;
     [[nodiscard]] int ranges_refused() const noexcept;

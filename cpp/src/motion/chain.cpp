@@ -14,8 +14,8 @@ constexpr double kAcceleration = 50;  // [m/s^2]
 
 }  // namespace
 
-Chain::Chain(std::span<const Vec3> X_ref, window::Gauge gauge, int axes) : axes_(axes), slice_(X_ref, gauge) {
-    const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref.size());
+Chain::Chain(const window::Reference& reference, int axes) : axes_(axes), slice_(reference) {
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(reference.X.size());
     for (MatX* matrix : {&H_XX, &yy_, &scratch_}) matrix->setZero(n, n);
     for (ModelByState* matrix : {&H_Xn, &yn_, &wide_}) matrix->setZero(n, states());
     for (VecX* vector : {&g_X, &eta_y_}) vector->setZero(n);
@@ -109,10 +109,11 @@ void Chain::linearise(const State& n) noexcept {
 
 void Chain::absorb(const MatX& A, const Eigen::Ref<const ModelByState>& B, const StateSquare& C, const VecX& g_X_view,
                    const State& g_n_view, const State& n) noexcept {
-    const Mat33 G = slice_.similarity().R / slice_.similarity().s;
     const Eigen::Index size = A.rows();
     for (Eigen::Index j = 0; j < size; j += 3) {
-        for (Eigen::Index i = 0; i < size; i += 3) scratch_.block<3, 3>(i, j) = G * A.block<3, 3>(i, j) * G.transpose();
+        const Mat33& G = slice_.lift(j);
+        for (Eigen::Index i = 0; i < size; i += 3)
+            scratch_.block<3, 3>(i, j) = slice_.lift(i) * A.block<3, 3>(i, j) * G.transpose();
         wide_.middleRows<3>(j) = G * B.middleRows<3>(j);
         eta_y_.segment<3>(j) -= G * g_X_view.segment<3>(j);
     }

@@ -7,16 +7,16 @@
 
 namespace fairlead::motion {
 
-Path::Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge gauge, std::size_t kept)
+Path::Path(Kind kind, double density, const window::Reference& reference, std::size_t kept)
     : kind_(kind),
       axes_(axes_of(kind)),
-      chain_(X_ref, gauge, axes_),
+      chain_(reference, axes_),
       base_(chain_),
       anew_(chain_),
       past_(kept),
       bank_(density, axes_),
-      tie_(static_cast<int>(X_ref.size())) {
-    const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref.size());
+      tie_(static_cast<int>(reference.X.size())) {
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(reference.X.size());
     const Eigen::Index joint = 6 + chain_.states();
     for (ModelByJoint* matrix : {&rows_t_, &Y_t_, &SigmaY_t_}) matrix->setZero(n, joint);
     A_.setZero(n, n);
@@ -26,7 +26,7 @@ Path::Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge
     L_inverse_.setIdentity(joint, joint);
     loosened_ = density_ = density;
     for (Past& past : past_) {
-        past.view = window::ViewBlock(static_cast<int>(X_ref.size()));
+        past.view = window::ViewBlock(static_cast<int>(reference.X.size()));
         past.later_information.setZero(chain_.states(), chain_.states());
         past.later.setZero(chain_.states());
     }
@@ -91,10 +91,19 @@ void Path::add_view(const window::ViewBlock& view, std::span<const Vec3> X, doub
     for (const window::PointTerm& term : view.terms) {
         const Eigen::Index row = 3 * term.landmark;
         const Mat33 M = scale * term.M;
-        rows_t_.block<3, 3>(row, 0) += M;
-        rows_t_.block<3, 3>(row, 3) -= M * so3::hat(X[static_cast<std::size_t>(term.landmark)]);
+        Eigen::Matrix<double, 3, 6> rows;
+        rows << M, -M * so3::hat(X[static_cast<std::size_t>(term.landmark)]);
+        rows_t_.block<3, 6>(row, 0) += rows;
         S.block<3, 3>(row, row) += M;
         g.segment<3>(row) += scale * term.v;
+        if (term.bias < 0) continue;
+        const Eigen::Index b = 3 * term.bias;
+        const Vec3 M_along = M * term.along;
+        rows_t_.block<1, 6>(b, 0) += term.along.transpose() * rows;
+        S.block<3, 1>(row, b) += M_along;
+        S.block<1, 3>(b, row) += M_along.transpose();
+        S(b, b) += term.along.dot(M_along);
+        g[b] += scale * term.along.dot(term.v);
     }
     if (!tied_) return;
     const Eigen::Matrix<double, 3, 6> WJ = tie_.information * tie_.J_pose;

@@ -37,11 +37,6 @@ void Path::smooth(const window::Problem& problem) noexcept {
     to_look_back_ = kept_;
 }
 
-void Path::move_ranges(double by_m) noexcept {
-    for (std::size_t i = 0; i < kept_; ++i)
-        for (window::RangeMeasurement& range : past(i).view.ranges) range.range_m -= by_m;
-}
-
 /// Of each view's motion, from the views after it: a chain against time.
 std::vector<Path::Later> Path::later_knowledge(const window::Problem& problem) {
     std::vector<Later> later(kept_);

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 namespace fairlead::motion {
@@ -35,7 +36,8 @@ void measure_scaled(const SE3& T, std::span<const Vec3> X, const window::Slice& 
     tie.value = s * quantity;
     tie.J_pose = s * B * point_rate(T, centroid(X));
     const Mat33 each = (s / static_cast<double>(X.size())) * (B * T.R).transpose();
-    for (Eigen::Index j = 0; j < tie.J_X_t.rows(); j += 3) tie.J_X_t.middleRows<3>(j) = each;
+    tie.J_X_t.setZero();
+    for (Eigen::Index j = 0; j < 3 * std::ssize(X); j += 3) tie.J_X_t.middleRows<3>(j) = each;
     tie.J_X_t.noalias() += rate_t.col(6) * (tie.value.transpose() / slice.radius());
 }
 
@@ -67,8 +69,9 @@ Kind kind_named(const std::string& name) {
     throw std::invalid_argument("motion kind: got '" + name + "', expected none, range, target or world");
 }
 
-bool measure(Kind kind, const SE3& T, std::span<const Vec3> X, const window::Slice& slice,
+bool measure(Kind kind, const SE3& T, std::span<const Vec3> model, const window::Slice& slice,
              const window::GaugeBasis& gauge_rate_t, const std::optional<Attitude>& attitude, Tie& tie) noexcept {
+    const std::span<const Vec3> X = slice.landmarks(model);
     const Vec3 p = T * centroid(X);
     const double range = p.norm();
     if (!(range > 0.0)) return false;

@@ -21,7 +21,7 @@ constexpr int kSecondLooks = 3;         // rounds in which views are tried from 
 Batch::Batch(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options)
     : options_(options), workspace_(static_cast<int>(X0.size())), Sigma_(P0) {
     problem_.camera = camera;
-    problem_.prior = window::make_prior(X0, P0);
+    problem_.prior = window::make_prior(X0, P0, set_aside(options));
     problem_.X.assign(X0.begin(), X0.end());
     problem_.design_effect = problem_.pose_factor = options.design_effect;
     scratch_.reserve(X0.size());
@@ -32,8 +32,7 @@ void Batch::add(const BatchView& view) {
     Candidate candidate;
     candidate.stamp_ns = view.stamp_ns;
     candidate.observations.reserve(problem_.X.size());
-    const int landmarks = problem_.landmarks() - (options_.range_to_origin ? 1 : 0);
-    candidate.dropped = sanitise(view.observations, landmarks, candidate.observations);
+    candidate.dropped = sanitise(view.observations, static_cast<int>(landmarks()), candidate.observations);
     candidates_.push_back(std::move(candidate));
 }
 
@@ -49,7 +48,6 @@ Refinement Batch::solve() {
         graduate(1.0);
     }
     if (last_.ok && options_.motion != motion::Kind::none) start_path();
-    if (last_.ok && range_bias_sigma_m_ > 0.0 && believed_ > 0) estimate_bias();
     return result();
 }
 

@@ -8,6 +8,7 @@
 
 #include "fairlead/motion/path.hpp"
 #include "fairlead/refine.hpp"
+#include "fairlead/tracker/entries.hpp"
 #include "fairlead/tracker/start_pose.hpp"
 #include "fairlead/window/covariance.hpp"
 #include "fairlead/window/levenberg_marquardt.hpp"
@@ -29,7 +30,7 @@ struct Candidate {
 /// All views of a flight and their joint solution, docs/estimator.md section 5.
 class Batch {
   public:
-    /// X0 and P0 with the origin as one more landmark, where ranges to it will come.
+    /// X0 and P0 with the entries that the options append.
     Batch(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options);
 
     void add(const BatchView& view);
@@ -54,16 +55,16 @@ class Batch {
     void start_path();
     [[nodiscard]] double cost_without_motion();
     void settle_on_path();
-    void solve_again();
-    void estimate_bias();
-    void move_ranges(double by_m);
-    [[nodiscard]] double range_score() const;
 
     Refinement result();
     [[nodiscard]] Estimate estimate(const Candidate& candidate, std::vector<int>& inliers) const;
     [[nodiscard]] const window::ViewBlock& block(const Candidate& candidate) const;
     [[nodiscard]] Mat66 covariance(const Candidate& candidate) const;
 
+    /// Those that were told.
+    [[nodiscard]] std::size_t landmarks() const {
+        return problem_.X.size() - static_cast<std::size_t>(appended_entries(options_));
+    }
     [[nodiscard]] UncertainModel model() const { return {problem_.X, blocks_}; }
     [[nodiscard]] double cost(const window::ViewBlock& view, const SE3& T) const {
         return window::view_cost(problem_.camera, problem_.X, problem_.told_loss(), problem_.noise_factor, T, view);
@@ -84,11 +85,6 @@ class Batch {
 
     std::optional<motion::Path> path_;
     std::vector<Mat66> path_covariances_;
-
-    double range_bias_sigma_m_ = 0.0;
-    double bias_m_ = 0.0, bias_variance_ = 0.0;
-    VecX bias_rate_;                    ///< d X / d bias
-    std::vector<Vec6> bias_pose_rate_;  ///< d xi / d bias, by candidate
 };
 
 }  // namespace fairlead

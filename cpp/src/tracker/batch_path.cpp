@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: fairlead contributors
 // SPDX-License-Identifier: Apache-2.0
-// The batch on a smooth path, and the constant error of its range finder.
+// The batch on a smooth path.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,9 +27,10 @@ void Batch::start_path() {
     for (Eigen::Index j = 0; j < problem_.prior->mean.size(); j += 3)
         X_ref.emplace_back(problem_.prior->mean.segment<3>(j));
     const window::Gauge gauge = believed_ > 0 ? window::Gauge::rigid : window::Gauge::similarity;
-    path_.emplace(options_.motion, options_.jerk_density_m_s25, X_ref, gauge,
+    const window::Reference reference{X_ref, gauge, set_aside(options_)};
+    path_.emplace(options_.motion, options_.jerk_density_m_s25, reference,
                   std::max<std::size_t>(1, problem_.views.size()));
-    problem_.path.emplace(X_ref, gauge);
+    problem_.path.emplace(reference);
     int on_path = 0;
     std::vector<window::ViewBlock> others;
     for (Candidate* candidate : in_time()) {
@@ -72,59 +73,6 @@ double Batch::cost_without_motion() {
     problem_.path.reset();
     if (!window::linearise(problem_)) return std::numeric_limits<double>::quiet_NaN();
     return window::posterior_cost(problem_) + 0.5 * on_path / problem_.noise_factor;
-}
-
-void Batch::solve_again() {
-    if (path_) return settle_on_path();
-    last_ = window::levenberg_marquardt(problem_, {.tolerance = kTolerance}, workspace_);
-    iterations_ += last_.iterations;
-    if (last_.ok && window::assemble_data(problem_, 0.0, workspace_)) measure_structure();
-}
-
-/// Takes the bias of the range finder for larger by so much.
-void Batch::move_ranges(double by_m) {
-    if (path_) path_->move_ranges(by_m);
-    for (window::ViewBlock& view : problem_.views)
-        for (window::RangeMeasurement& range : view.ranges) range.range_m -= by_m;
-}
-
-/// d E / d bias at the present solution, without its prior.
-double Batch::range_score() const {
-    double score = 0.0;
-    for (const Candidate& candidate : candidates_) {
-        if (candidate.view < 0) continue;
-        const window::ViewBlock& view = block(candidate);
-        for (const window::RangeMeasurement& range : view.ranges) {
-            const Vec3 p = view.state.T_camera_target * problem_.X[static_cast<std::size_t>(range.landmark)];
-            score += (p.norm() - range.range_m) / (range.sigma_m * range.sigma_m);
-        }
-    }
-    return score;
-}
-
-/// The bias by one Newton step on E with all else solved for, docs/range.md eq. (5)-(6): what depends on it, and how,
-/// is seen from a second solution with another bias.
-void Batch::estimate_bias() {
-    const double step = range_bias_sigma_m_;
-    const std::vector<Vec3> X = problem_.X;
-    std::vector<SE3> T;
-    T.reserve(candidates_.size());
-    for (const Candidate& candidate : candidates_)
-        T.push_back(candidate.view < 0 ? SE3{} : block(candidate).state.T_camera_target);
-    const double score = range_score();
-    move_ranges(step);
-    solve_again();
-    if (!last_.ok) return;
-    const double curvature = std::max(0.0, (range_score() - score) / step) + 1.0 / (step * step);
-    bias_rate_ = (stacked(problem_.X) - stacked(X)) / step;
-    bias_pose_rate_.assign(candidates_.size(), Vec6::Zero());
-    for (std::size_t k = 0; k < T.size(); ++k)
-        if (candidates_[k].view >= 0)
-            bias_pose_rate_[k] = difference(T[k], block(candidates_[k]).state.T_camera_target) / step;
-    bias_m_ = -score / curvature;
-    bias_variance_ = 1.0 / curvature;
-    move_ranges(bias_m_ - step);
-    solve_again();
 }
 
 }  // namespace fairlead

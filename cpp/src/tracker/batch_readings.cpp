@@ -79,21 +79,19 @@ Candidate* nearest(std::span<Candidate* const> views, std::int64_t stamp_ns, dou
 }  // namespace
 
 void Batch::add(const BatchReadings& readings) {
-    const int n = problem_.landmarks() - (options_.range_to_origin ? 1 : 0);
+    const int n = static_cast<int>(landmarks());
     for (const window::LengthMeasurement& length : readings.lengths) {
         require_length(length, n);
         problem_.lengths.push_back(length);
     }
     std::vector<std::vector<Range>> by_landmark(problem_.X.size());
     for (Range range : readings.ranges) {
-        range.range.landmark = range_landmark(range.range.landmark, n, options_.range_to_origin);
+        range.range.landmark = range_landmark(range.range.landmark, n, options_);
         require_positive(range.range.range_m, "range_m");
         require_positive(range.range.sigma_m, "sigma_m");
+        if (set_aside(options_) > 0) range.range.bias = problem_.landmarks() - 1;
         by_landmark[static_cast<std::size_t>(range.range.landmark)].push_back(range);
     }
-    require(readings.range_bias_sigma_m >= 0.0 && std::isfinite(readings.range_bias_sigma_m), "range_bias_sigma_m",
-            std::to_string(readings.range_bias_sigma_m), "zero or more");
-    range_bias_sigma_m_ = readings.range_bias_sigma_m;
     for (std::vector<Range>& ranges : by_landmark) add_ranges(std::move(ranges));
     add_attitudes(readings.attitudes);
 }

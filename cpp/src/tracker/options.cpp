@@ -36,6 +36,8 @@ void validate(const TrackerOptions& options) {
             "correlation_log_range", options.correlation_log_range, "zero or more");
     require(options.design_effect >= 1.0 && std::isfinite(options.design_effect), "design_effect",
             options.design_effect, "one or more");
+    require(options.range_bias_sigma_m >= 0.0 && std::isfinite(options.range_bias_sigma_m), "range_bias_sigma_m",
+            options.range_bias_sigma_m, "zero or more metres");
     require(options.ambiguity_log_odds >= 0.0, "ambiguity_log_odds", options.ambiguity_log_odds, "zero or more");
 }
 

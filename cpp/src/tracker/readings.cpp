@@ -40,19 +40,6 @@ void require_length(const window::LengthMeasurement& length, int landmarks) {
     require_positive(sigma_m, "sigma_m");
 }
 
-int range_landmark(int landmark, int landmarks, bool to_origin) {
-    require((landmark == kOrigin && to_origin) || (landmark >= 0 && landmark < landmarks), "range to",
-            std::to_string(landmark), "a landmark, or the origin with the option range_to_origin");
-    return landmark == kOrigin ? landmarks : landmark;
-}
-
-void add_origin(std::vector<Vec3>& X, MatX& P) {
-    const MatX told = P;
-    X.emplace_back(Vec3::Zero());
-    P = MatX::Zero(told.rows() + 3, told.cols() + 3);
-    P.topLeftCorner(told.rows(), told.cols()) = told;
-}
-
 void Readings::add_range(std::int64_t stamp_ns, const window::RangeMeasurement& range) {
     require_positive(range.range_m, "range_m");
     require_positive(range.sigma_m, "sigma_m");
@@ -78,7 +65,9 @@ std::span<const window::RangeMeasurement> Readings::ranges_at(std::int64_t stamp
             continue;
         }
         ++believed_;
-        taken_[n++] = {range.landmark, range.range_m + rate * dt, std::hypot(range.sigma_m, rate_share * rate * dt)};
+        taken_[n] = range;
+        taken_[n].range_m += rate * dt;
+        taken_[n++].sigma_m = std::hypot(range.sigma_m, rate_share * rate * dt);
     }
     n_pending_ = 0;
     return {taken_.data(), n};

@@ -18,19 +18,10 @@ const window::ViewBlock& Batch::block(const Candidate& candidate) const {
 
 /// Of a pose, with what is not known of the model and of the range finder.
 Mat66 Batch::covariance(const Candidate& candidate) const {
-    Mat66 covariance;
-    if (candidate.on_path >= 0) {
-        covariance = path_covariances_[static_cast<std::size_t>(candidate.on_path)];
-    } else {
-        MatX Yt(Sigma_.rows(), window::ViewState::kDim);
-        MatX SigmaYt = Yt;
-        covariance = window::state_covariance(block(candidate), problem_.X, Sigma_, problem_.pose_factor, Yt, SigmaYt);
-    }
-    if (bias_variance_ > 0.0) {
-        const Vec6& rate = bias_pose_rate_[static_cast<std::size_t>(&candidate - candidates_.data())];
-        covariance += bias_variance_ * rate * rate.transpose();
-    }
-    return covariance;
+    if (candidate.on_path >= 0) return path_covariances_[static_cast<std::size_t>(candidate.on_path)];
+    MatX Yt(Sigma_.rows(), window::ViewState::kDim);
+    MatX SigmaYt = Yt;
+    return window::state_covariance(block(candidate), problem_.X, Sigma_, problem_.pose_factor, Yt, SigmaYt);
 }
 
 /// With the landmarks that passed the chi-square gate of the view.
@@ -67,12 +58,11 @@ Refinement Batch::result() {
     refinement.inliers.resize(candidates_.size());
     for (std::size_t k = 0; k < candidates_.size(); ++k)
         refinement.estimates.push_back(estimate(candidates_[k], refinement.inliers[k]));
-    const std::size_t landmarks = problem_.X.size() - (options_.range_to_origin ? 1 : 0);
-    refinement.X.assign(problem_.X.begin(), problem_.X.begin() + static_cast<std::ptrdiff_t>(landmarks));
-    MatX Sigma = Sigma_;
-    if (bias_variance_ > 0.0) Sigma += bias_variance_ * bias_rate_ * bias_rate_.transpose();
-    if (last_.ok) window::add_gauge_curvature(problem_.X, Sigma);
-    const Eigen::Index n = 3 * static_cast<Eigen::Index>(landmarks);
+    refinement.X.assign(problem_.X.begin(), problem_.X.begin() + static_cast<std::ptrdiff_t>(landmarks()));
+    const int points = problem_.landmarks() - set_aside(options_);
+    MatX Sigma = Sigma_.topLeftCorner(3 * points, 3 * points);
+    if (last_.ok) window::add_gauge_curvature(std::span(problem_.X).first(static_cast<std::size_t>(points)), Sigma);
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(landmarks());
     refinement.covariance = Sigma.topLeftCorner(n, n);
     refinement.noise_factor = problem_.noise_factor;
     refinement.prior_factor = problem_.prior_factors.likely;
@@ -82,8 +72,7 @@ Refinement Batch::result() {
     refinement.converged = last_.converged;
     refinement.ranges_believed = believed_;
     refinement.ranges_refused = refused_;
-    refinement.range_bias_m = bias_m_;
-    refinement.range_bias_sigma_m = std::sqrt(bias_variance_);
+    refinement.range_bias = range_bias(options_, problem_.X, Sigma_);
     return refinement;
 }
 
@@ -94,7 +83,7 @@ Refinement refine(const Camera& camera, std::span<const Vec3> X0, const MatX& P0
     require(X0.size() >= 4, "landmarks", std::to_string(X0.size()), "at least 4 (a pose needs them)");
     std::vector<Vec3> X(X0.begin(), X0.end());
     MatX P = P0;
-    if (options.range_to_origin) add_origin(X, P);
+    append_entries(options, X, P);
     Batch batch(camera, X, P, options);
     for (const BatchView& view : views) batch.add(view);
     batch.add(readings);

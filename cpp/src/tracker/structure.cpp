@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "fairlead/tracker/entries.hpp"
+
 namespace fairlead {
 namespace {
 
@@ -25,19 +27,22 @@ Eigen::Map<const VecX> stacked(const std::vector<Vec3>& X) {
 }  // namespace
 
 Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options)
-    : workspace_(static_cast<int>(X0.size())),
+    : aside_(set_aside(options)),
+      landmarks_(X0.size() - static_cast<std::size_t>(aside_)),
+      workspace_(static_cast<int>(X0.size())),
       kind_(options.motion),
       jerk_density_(options.jerk_density_m_s25),
       shares_(options),
       max_views_(static_cast<std::size_t>(options.max_views)) {
     validate(camera);
     problem_.camera = camera;
-    problem_.prior = window::make_prior(X0, P0);
+    problem_.prior = window::make_prior(X0, P0, aside_);
     for (const window::Gauge gauge : {window::Gauge::similarity, window::Gauge::rigid})
-        problem_.compressed.emplace_back(X0, gauge);
+        problem_.compressed.emplace_back(window::Reference{X0, gauge, aside_});
     if (kind_ != motion::Kind::none) {
-        path_.emplace(kind_, jerk_density_, X0, window::Gauge::similarity);
-        problem_.path.emplace(X0, window::Gauge::similarity);
+        const window::Reference reference{X0, window::Gauge::similarity, aside_};
+        path_.emplace(kind_, jerk_density_, reference);
+        problem_.path.emplace(reference);
     }
     problem_.X.assign(X0.begin(), X0.end());
     problem_.loss.threshold = options.loss_threshold;
@@ -55,7 +60,7 @@ Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX&
     for (std::size_t j = 0; j < X0.size(); ++j) {
         const Eigen::Index row = 3 * static_cast<Eigen::Index>(j);
         blocks_[j] = P0.block<3, 3>(row, row);
-        radius_ = std::max(j == 0 ? 0.0 : radius_, (X0[j] - X0[0]).norm());
+        if (j < landmarks_) radius_ = std::max(j == 0 ? 0.0 : radius_, (X0[j] - X0[0]).norm());
     }
     const std::size_t capacity = max_views_ + 1;
     problem_.views.reserve(capacity);
@@ -63,21 +68,29 @@ Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX&
     workspace_.T_before.reserve(capacity);
     descriptors_.resize(capacity);
     for (std::size_t k = 0; k < capacity; ++k) pool_.emplace_back(static_cast<int>(X0.size()));
-    log_det_ = Eigen::LLT<MatX>(problem_.prior->information).matrixLLT().diagonal().array().log().sum();
+    window::scale_and_add_prior(problem_, problem_.X, workspace_);
+    log_det_ = Eigen::LLT<MatX>(workspace_.S).matrixLLT().diagonal().array().log().sum();
 }
 
 void Structure::expect_ranges() {
     if (!path_ || path_gauge_ == window::Gauge::rigid) return;
     path_gauge_ = window::Gauge::rigid;
-    const std::vector<Vec3> X_ref = landmarks_told();
+    const std::vector<Vec3> X_ref = told();
+    const window::Reference reference{X_ref, path_gauge_, aside_};
     path_->marginal(workspace_.product, workspace_.D);
     problem_.compressed.front().add(workspace_.product, workspace_.D, problem_.noise_factor);
-    path_.emplace(kind_, jerk_density_, X_ref, path_gauge_);
-    problem_.path.emplace(X_ref, path_gauge_);
+    path_.emplace(kind_, jerk_density_, reference);
+    problem_.path.emplace(reference);
     stale_ = true;
 }
 
 std::vector<Vec3> Structure::landmarks_told() const {
+    std::vector<Vec3> X = told();
+    X.resize(landmarks_);
+    return X;
+}
+
+std::vector<Vec3> Structure::told() const {
     std::vector<Vec3> X;
     for (Eigen::Index j = 0; j < problem_.prior->mean.size(); j += 3)
         X.emplace_back(problem_.prior->mean.segment<3>(j));
@@ -155,7 +168,9 @@ ViewBlock Structure::make_view(std::int64_t stamp_ns, const SE3& T_start, std::s
     for (const Observation& o : observations) view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
     view.ranges.assign(ranges.begin(),
                        ranges.begin() + std::min<std::ptrdiff_t>(std::ssize(ranges), ViewBlock::kMaxRanges));
-    view.share = shares_.of(outlook(stamp_ns, T_start, problem_.X));
+    if (aside_ > 0)
+        for (window::RangeMeasurement& range : view.ranges) range.bias = problem_.landmarks() - 1;
+    view.share = shares_.of(outlook(stamp_ns, T_start, landmarks()));
     return view;
 }
 

@@ -34,8 +34,7 @@ void Structure::absorb_newest() noexcept {
 /// Estimated error [sigma] of treating the window as a quadratic: relative change of the model times its whitened size.
 double Structure::nonlinearity() noexcept {
     double largest = 0.0;
-    for (std::size_t j = 0; j < problem_.X.size(); ++j)
-        largest = std::max(largest, (problem_.X[j] - X_window_[j]).norm());
+    for (std::size_t j = 0; j < landmarks_; ++j) largest = std::max(largest, (problem_.X[j] - X_window_[j]).norm());
     shift_ = stacked(problem_.X) - stacked(X_window_);
     workspace_.step.noalias() = workspace_.S.selfadjointView<Eigen::Lower>() * shift_;
     return largest / radius_ * std::sqrt(std::max(0.0, shift_.dot(workspace_.step)));
@@ -88,8 +87,8 @@ bool Structure::relinearise(double error) noexcept {
 }
 
 MatX Structure::covariance() const {
-    MatX Sigma = Sigma_;
-    if (fused_ > 0) window::add_gauge_curvature(problem_.X, Sigma);
+    MatX Sigma = covariance_linear();
+    if (fused_ > 0) window::add_gauge_curvature(landmarks(), Sigma);
     return Sigma;
 }
 

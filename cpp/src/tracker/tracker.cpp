@@ -31,7 +31,7 @@ struct Tracker::State {
     State(const Camera& camera_in, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options_in)
         : camera(camera_in),
           options(options_in),
-          landmarks(X0.size() - (options_in.range_to_origin ? 1 : 0)),
+          landmarks(X0.size() - static_cast<std::size_t>(appended_entries(options_in))),
           structure(camera_in, X0, P0, options_in) {
         for (auto* list : {&clean, &scratch, &kept}) list->reserve(X0.size());
         inliers.reserve(X0.size());
@@ -216,7 +216,7 @@ Tracker::Tracker(const Camera& camera, std::span<const Vec3> X0, const MatX& P0,
     require(X0.size() >= 4, "landmarks", std::to_string(X0.size()), "at least 4 (a pose needs them)");
     std::vector<Vec3> X(X0.begin(), X0.end());
     MatX P = P0;
-    if (options.range_to_origin) add_origin(X, P);
+    append_entries(options, X, P);
     state_ = std::make_unique<State>(camera, X, P, options);
 }
 
@@ -226,7 +226,7 @@ void Tracker::add_length(int a, int b, double length_m, double sigma_m) {
 }
 
 void Tracker::add_range(std::int64_t stamp_ns, double range_m, double sigma_m, int landmark) {
-    const int number = range_landmark(landmark, static_cast<int>(state_->landmarks), state_->options.range_to_origin);
+    const int number = range_landmark(landmark, static_cast<int>(state_->landmarks), state_->options);
     state_->readings.add_range(stamp_ns, {number, range_m, sigma_m});
     state_->structure.expect_ranges();
 }
@@ -281,6 +281,9 @@ double Tracker::determined_directions() const noexcept { return state_->structur
 double Tracker::predicted_gain(const SE3& T_camera_target, double sigma_px) const {
     return window::predicted_gain(state_->camera, state_->structure.landmarks(), state_->structure.covariance_linear(),
                                   T_camera_target, sigma_px);
+}
+RangeBias Tracker::range_bias() const noexcept {
+    return fairlead::range_bias(state_->options, state_->structure.entries(), state_->structure.entries_covariance());
 }
 int Tracker::views_in_window() const noexcept { return state_->structure.views(); }
 int Tracker::ranges_believed() const noexcept { return state_->readings.believed(); }

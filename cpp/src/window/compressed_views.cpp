@@ -6,8 +6,8 @@
 
 namespace fairlead::window {
 
-CompressedViews::CompressedViews(std::span<const Vec3> X_ref, Gauge gauge) : slice_(X_ref, gauge) {
-    const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref.size());
+CompressedViews::CompressedViews(const Reference& reference) : slice_(reference) {
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(reference.X.size());
     for (MatX* matrix : {&Lambda_, &hessian_, &A_}) matrix->setZero(n, n);
     for (VecX* vector : {&eta_, &gradient_, &q_}) vector->setZero(n);
 }
@@ -23,8 +23,17 @@ void CompressedViews::add(const ViewBlock& view, std::span<const Vec3> X) noexce
         const int a = term.landmark;
         const StateByPoint rows = reduced_rows(view, term, X[static_cast<std::size_t>(a)]);
         A_.block<3, ViewState::kDim>(3 * a, 0).noalias() += G * rows;  // scratch: Y^T in the first columns
-        q_.segment<3>(3 * a) += G * (term.v - rows * y);
+        const Vec3 gradient = term.v - rows * y;
+        q_.segment<3>(3 * a) += G * gradient;
         Lambda_.block<3, 3>(3 * a, 3 * a) += G * term.M * G.transpose();
+        if (term.bias < 0) continue;
+        const int b = 3 * term.bias;
+        const Vec3 M_along = term.M * term.along;
+        A_.row(b).head<ViewState::kDim>() += term.along.transpose() * rows;
+        q_[b] += term.along.dot(gradient);
+        Lambda_.block<3, 1>(3 * a, b) += G * M_along;
+        Lambda_.block<1, 3>(b, 3 * a) += (G * M_along).transpose();
+        Lambda_(b, b) += term.along.dot(M_along);
     }
     // b'^T u_lin and A' u_lin, A' = G M G^T - Y'^T Y', before Lambda takes the view in.
     const auto Yt = A_.leftCols<ViewState::kDim>();
@@ -35,9 +44,12 @@ void CompressedViews::add(const ViewBlock& view, std::span<const Vec3> X) noexce
     eta_.noalias() -= Yt * Yu;
     for (const PointTerm& term : view.terms) {
         const int a = term.landmark;
-        const Vec3 Mu = G * (term.M * (G.transpose() * u.segment<3>(3 * a)));
-        eta_.segment<3>(3 * a) += Mu;
-        quadratic += u.segment<3>(3 * a).dot(Mu);
+        Vec3 moved = G.transpose() * u.segment<3>(3 * a);
+        if (term.bias >= 0) moved += u[3 * term.bias] * term.along;
+        const Vec3 M_moved = term.M * moved;
+        eta_.segment<3>(3 * a) += G * M_moved;
+        if (term.bias >= 0) eta_[3 * term.bias] += term.along.dot(M_moved);
+        quadratic += moved.dot(M_moved);
     }
     for (Eigen::Index c = 0; c < ViewState::kDim; ++c) Lambda_.noalias() -= Yt.col(c) * Yt.col(c).transpose();
     constant_ += view.inlier_squares + view.range_squares - y.squaredNorm() - 2.0 * linear + quadratic;

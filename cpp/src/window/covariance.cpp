@@ -27,7 +27,8 @@ double structure_covariance(const Problem& problem, Workspace& workspace, MatX& 
     if (!problem.prior) return parameters;
     const auto [believed, likely] = problem.prior_factors;
     workspace.product.noalias() = problem.prior->information * Sigma;
-    const double determined = std::clamp(parameters - workspace.product.trace() / believed, 0.0, parameters);
+    const double told = workspace.product.trace() / believed + problem.prior->aside.dot(Sigma.diagonal());
+    const double determined = std::clamp(parameters - told, 0.0, parameters);
     if (likely > believed) {
         const double excess = (likely - believed) / (believed * believed);
         workspace.S = Sigma;  // is in its factor already
@@ -39,9 +40,11 @@ double structure_covariance(const Problem& problem, Workspace& workspace, MatX& 
 StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_target, const MatX& Sigma,
                              double pose_factor, MatX& Yt, MatX& SigmaYt) noexcept {
     Yt.setZero();
-    for (const PointTerm& term : view.terms)
-        Yt.block<3, ViewState::kDim>(3 * term.landmark, 0) +=
-            reduced_rows(view, term, X_target[static_cast<std::size_t>(term.landmark)]);
+    for (const PointTerm& term : view.terms) {
+        const StateByPoint rows = reduced_rows(view, term, X_target[static_cast<std::size_t>(term.landmark)]);
+        Yt.block<3, ViewState::kDim>(3 * term.landmark, 0) += rows;
+        if (term.bias >= 0) Yt.row(3 * term.bias) += term.along.transpose() * rows;
+    }
     for (Eigen::Index c = 0; c < ViewState::kDim; ++c) SigmaYt.col(c).noalias() = Sigma * Yt.col(c);
     StateMatrix inner = Yt.transpose() * SigmaYt;
     inner.diagonal().array() += pose_factor * view.share;  // this one view errs as told, however alike its neighbours
@@ -87,6 +90,7 @@ void update_prior_factors(Problem& problem, const MatX& H, const VecX& g, std::s
     workspace.D.noalias() -= H.selfadjointView<Eigen::Lower>() * workspace.step;
     workspace.D *= scale;
     workspace.product = scale * H;
+    workspace.product.diagonal() += problem.prior->aside;
     problem.prior_factors = workspace.evidence.evaluate(*problem.prior, workspace.product, workspace.D);
 }
 

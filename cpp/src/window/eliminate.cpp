@@ -33,11 +33,16 @@ StateByPoint reduced_rows(const ViewBlock& view, const PointTerm& term, const Ve
     return (EL * term.M).transpose();
 }
 
+Vec3 point_step(const PointTerm& term, const VecX& dX) noexcept {
+    const Vec3 own = dX.segment<3>(3 * term.landmark);
+    return term.bias < 0 ? own : Vec3(own + dX[3 * term.bias] * term.along);
+}
+
 StateVector back_substitute(const ViewBlock& view, std::span<const Vec3> X_target, const VecX& dX) noexcept {
     StateVector rhs = view.g;
     for (const PointTerm& term : view.terms) {
         const int j = term.landmark;
-        const Vec3 f = term.M * dX.segment<3>(3 * j);
+        const Vec3 f = term.M * point_step(term, dX);
         rhs.head<3>() += f;
         rhs.tail<3>() += X_target[static_cast<std::size_t>(j)].cross(f);
     }
@@ -53,7 +58,15 @@ void Eliminator::add(const ViewBlock& view, std::span<const Vec3> X_target, MatX
         const StateByPoint rows = reduced_rows(view, term, X_target[static_cast<std::size_t>(j)]);
         for (int r = 0; r < 3; ++r) Y_.add(3 * j + r, rows.row(r));
         S.block<3, 3>(3 * j, 3 * j) += term.M;
-        g.segment<3>(3 * j) += term.v - rows * y;
+        const Vec3 gradient = term.v - rows * y;
+        g.segment<3>(3 * j) += gradient;
+        if (term.bias < 0) continue;
+        const int b = 3 * term.bias;
+        const Vec3 M_along = term.M * term.along;
+        Y_.add(b, term.along.transpose() * rows);
+        S.block<1, 3>(b, 3 * j) += M_along.transpose();
+        S(b, b) += term.along.dot(M_along);
+        g[b] += term.along.dot(gradient);
     }
     Y_.take(kDim);
     if (Y_.room() < kDim) flush(S);

@@ -44,7 +44,7 @@ MatX landmark_covariance(std::span<const Vec3> X0, std::span<const Vec3> sigma, 
     return P0;
 }
 
-LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance) {
+LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance, int aside) {
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(X0.size());
     if (n == 0) throw std::invalid_argument("landmarks: got none, expected at least one");
     if (covariance.rows() != n || covariance.cols() != n)
@@ -60,14 +60,24 @@ LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance) {
     if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > 1e-9 * largest)
         throw std::invalid_argument("prior covariance: got an asymmetric matrix, expected a symmetric one");
 
-    const double floor = std::pow(kFixedSigma * std::max(extent(X0), 1e-9), 2);
-    const Eigen::SelfAdjointEigenSolver<MatX> eigen(0.5 * (covariance + covariance.transpose()));
+    const Eigen::Index m = n - 3 * aside;
+    prior.aside = VecX::Zero(n);
+    prior.aside.tail(n - m) = covariance.diagonal().tail(n - m).cwiseInverse();
+    const double floor = std::pow(kFixedSigma * std::max(extent(X0.first(static_cast<std::size_t>(m / 3))), 1e-9), 2);
+    const MatX P0 = covariance.topLeftCorner(m, m);
+    const Eigen::SelfAdjointEigenSolver<MatX> eigen(0.5 * (P0 + P0.transpose()));
     if (eigen.eigenvalues().minCoeff() < -1e-9 * largest)
         throw std::invalid_argument("prior covariance: got a negative eigenvalue, expected positive semidefinite");
     const VecX information = (eigen.eigenvalues().array().max(0.0) + floor).inverse().matrix();
-    prior.information = eigen.eigenvectors() * information.asDiagonal() * eigen.eigenvectors().transpose();
-    prior.information = (0.5 * (prior.information + prior.information.transpose())).eval();
+    const MatX inverse = eigen.eigenvectors() * information.asDiagonal() * eigen.eigenvectors().transpose();
+    prior.information = MatX::Zero(n, n);
+    prior.information.topLeftCorner(m, m) = 0.5 * (inverse + inverse.transpose());
     return prior;
+}
+
+double aside_cost(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept {
+    const Eigen::Map<const VecX> x(X.front().data(), prior.mean.size());
+    return x.cwiseAbs2().dot(prior.aside);
 }
 
 double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept {

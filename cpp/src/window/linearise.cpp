@@ -22,6 +22,10 @@ void accumulate_state(const PointTerm& term, const Vec3& X, StateMatrix& H, Stat
     g.tail<3>() += X.cross(term.v);
 }
 
+double range_residual(std::span<const Vec3> X_target, const RangeMeasurement& m, const Vec3& p) noexcept {
+    return p.norm() + (m.bias < 0 ? 0.0 : X_target[static_cast<std::size_t>(m.bias)].x()) - m.range_m;
+}
+
 /// A range is a term of rank one. Its sigma is in metres and no part of the estimated noise of the pixels: `told` turns
 /// it into their units. It is believed: what to believe was decided by other readings, not by a pose that may be far
 /// off still.
@@ -33,10 +37,10 @@ void linearise_ranges(std::span<const Vec3> X_target, double told, ViewBlock& vi
         const Vec3& X = X_target[static_cast<std::size_t>(measurement.landmark)];
         const Vec3 p = T * X;
         const double information = told / (measurement.sigma_m * measurement.sigma_m);
-        const double r = p.norm() - measurement.range_m;
+        const double r = range_residual(X_target, measurement, p);
         const Vec3 B = T.R.transpose() * p.normalized();
         PointTerm& term = view.terms[view.measurements.size() + i];
-        term = {measurement.landmark, information * B * B.transpose(), information * r * B};
+        term = {measurement.landmark, information * B * B.transpose(), information * r * B, measurement.bias, B};
         accumulate_state(term, X, view.H, view.g);
         view.range_squares += information * r * r;
     }
@@ -45,9 +49,10 @@ void linearise_ranges(std::span<const Vec3> X_target, double told, ViewBlock& vi
 
 double range_cost(std::span<const Vec3> X_target, double told, const SE3& T, const ViewBlock& view) noexcept {
     double cost = 0.0;
-    for (const RangeMeasurement& m : view.ranges)
-        cost +=
-            told * std::pow(((T * X_target[static_cast<std::size_t>(m.landmark)]).norm() - m.range_m) / m.sigma_m, 2);
+    for (const RangeMeasurement& m : view.ranges) {
+        const Vec3 p = T * X_target[static_cast<std::size_t>(m.landmark)];
+        cost += told * std::pow(range_residual(X_target, m, p) / m.sigma_m, 2);
+    }
     return cost;
 }
 

@@ -43,6 +43,7 @@ PriorEvidence::PriorEvidence(int landmarks)
 PriorFactors PriorEvidence::evaluate(const LandmarkPrior& prior, const MatX& A, const VecX& b) noexcept {
     Curve evidence;
     Curve posterior;
+    const auto scaled = static_cast<double>((prior.information.diagonal().array() > 0.0).count());
     for (std::size_t i = 0; i < kFactors; ++i) {
         const double log_q = log_factor(static_cast<double>(i));
         S_ = std::exp(-log_q) * prior.information;
@@ -50,7 +51,7 @@ PriorFactors PriorEvidence::evaluate(const LandmarkPrior& prior, const MatX& A, 
         if (!cholesky_.factor(S_)) return {};
         y_ = b;
         cholesky_.L().solveInPlace(y_);
-        evidence[i] = 0.5 * y_.squaredNorm() - cholesky_.half_log_det() - 0.5 * static_cast<double>(b.size()) * log_q;
+        evidence[i] = 0.5 * y_.squaredNorm() - cholesky_.half_log_det() - 0.5 * scaled * log_q;
         if (!std::isfinite(evidence[i])) return {};
         posterior[i] = evidence[i] - 0.5 * kPriorBelief * (log_q + std::exp(-log_q));
     }

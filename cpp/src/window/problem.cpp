@@ -63,8 +63,9 @@ double posterior_cost(Problem& problem) noexcept {
         if (!views.empty()) data += views.value(problem.X);
     for (const ViewBlock& view : problem.views) data += view.cost;
     double prior = problem.prior ? squared_distance(*problem.prior, problem.X) : 0.0;
-    prior += problem.prior_factors.believed * length_cost(problem.lengths, problem.X);
-    return 0.5 * (data / problem.noise_factor + prior / problem.prior_factors.believed);
+    const double known =
+        length_cost(problem.lengths, problem.X) + (problem.prior ? aside_cost(*problem.prior, problem.X) : 0.0);
+    return 0.5 * (data / problem.noise_factor + prior / problem.prior_factors.believed + known);
 }
 
 bool linearise(Problem& problem) noexcept {
@@ -84,7 +85,10 @@ bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexc
     for (ViewBlock& view : problem.views) {
         if (!factor_state(damping, view)) return false;
         workspace.eliminator.add(view, problem.X, workspace.S, workspace.g);
-        for (const PointTerm& term : view.terms) workspace.D.segment<3>(3 * term.landmark) += term.M.diagonal();
+        for (const PointTerm& term : view.terms) {
+            workspace.D.segment<3>(3 * term.landmark) += term.M.diagonal();
+            if (term.bias >= 0) workspace.D[3 * term.bias] += term.along.dot(term.M * term.along);
+        }
     }
     workspace.eliminator.flush(workspace.S);
     for (const CompressedViews& views : problem.compressed)
@@ -105,6 +109,9 @@ void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Worksp
     workspace.D += scale * problem.prior->information.diagonal();
     workspace.step = scale * (stacked(X) - problem.prior->mean);
     workspace.g.noalias() += problem.prior->information * workspace.step;
+    workspace.S.diagonal() += problem.prior->aside;
+    workspace.D += problem.prior->aside;
+    workspace.g += problem.prior->aside.cwiseProduct(stacked(X));
 }
 
 }  // namespace fairlead::window

@@ -25,32 +25,38 @@ double radius_of(std::span<const Vec3> X) noexcept {
 
 }  // namespace
 
-Slice::Slice(std::span<const Vec3> X_ref, Gauge gauge)
-    : gauge_(gauge), X_ref_(X_ref.begin(), X_ref.end()), y_(X_ref_), radius_(radius_of(X_ref)) {
-    const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref.size());
+Slice::Slice(const Reference& reference)
+    : gauge_(reference.gauge),
+      landmarks_(reference.X.size() - static_cast<std::size_t>(reference.aside)),
+      X_ref_(reference.X.begin(), reference.X.end()),
+      y_(X_ref_),
+      radius_(radius_of(landmarks(X_ref_))) {
+    const Eigen::Index n = 3 * static_cast<Eigen::Index>(X_ref_.size());
     u_.setZero(n);
     for (GaugeBasis* basis : {&N_, &N_ref_, &U_t_, &AN_}) basis->setZero(n, 7);
-    gauge_basis(X_ref_, radius_, N_ref_);
+    gauge_basis(landmarks(X_ref_), radius_, N_ref_);
     if (gauge_ == Gauge::rigid) N_ref_.col(6).setZero();
 }
 
-Vec3 Slice::centre() const noexcept { return centroid(y_); }
+Vec3 Slice::centre() const noexcept { return centroid(landmarks(y_)); }
 
 void Slice::align(std::span<const Vec3> X) noexcept {
-    S_ = window::align(X, X_ref_);
+    S_ = window::align(landmarks(X), landmarks(X_ref_));
     if (gauge_ == Gauge::rigid) {
         S_.s = 1.0;
-        S_.t = centroid(X_ref_) - S_.R * centroid(X);
+        S_.t = centroid(landmarks(X_ref_)) - S_.R * centroid(landmarks(X));
     }
+    factor_ = S_.s * S_.R;
+    lift_ = S_.R / S_.s;
     for (std::size_t j = 0; j < X.size(); ++j) {
-        y_[j] = S_.s * (S_.R * X[j]) + S_.t;
+        y_[j] = j < landmarks_ ? Vec3(S_.s * (S_.R * X[j]) + S_.t) : X[j];
         u_.segment<3>(3 * static_cast<Eigen::Index>(j)) = y_[j] - X_ref_[j];
     }
 }
 
 void Slice::linearise(std::span<const Vec3> X) noexcept {
     align(X);
-    gauge_basis(y_, radius_, N_);
+    gauge_basis(landmarks(y_), radius_, N_);
     // P = I - N U, U = (N_ref^T N)^-1 N_ref^T: changes of y stay on the slice.
     Mat77 gram;
     gram.noalias() = N_ref_.transpose() * N_;
@@ -73,14 +79,16 @@ void Slice::pull_back(MatX& A, MatX& H) noexcept {
         A.noalias() -= U_t_.col(c) * AN_.col(c).transpose();
         A.noalias() -= AN_.col(c) * U_t_.col(c).transpose();
     }
-    const Mat33 sR = S_.s * S_.R;
-    for (Eigen::Index j = 0; j < A.rows(); j += 3)
-        for (Eigen::Index i = 0; i < A.rows(); i += 3) H.block<3, 3>(i, j) = sR.transpose() * A.block<3, 3>(i, j) * sR;
+    for (Eigen::Index j = 0; j < A.rows(); j += 3) {
+        const Mat33& right = factor(j);
+        for (Eigen::Index i = 0; i < A.rows(); i += 3)
+            H.block<3, 3>(i, j) = factor(i).transpose() * A.block<3, 3>(i, j) * right;
+    }
 }
 
 void Slice::gauge_rate(GaugeBasis& rate_t) const noexcept {
-    const Mat33 sR = S_.s * S_.R;
-    for (Eigen::Index j = 0; j < u_.size(); j += 3) rate_t.middleRows<3>(j) = -(sR.transpose() * U_t_.middleRows<3>(j));
+    for (Eigen::Index j = 0; j < u_.size(); j += 3)
+        rate_t.middleRows<3>(j) = -(factor(j).transpose() * U_t_.middleRows<3>(j));
 }
 
 }  // namespace fairlead::window

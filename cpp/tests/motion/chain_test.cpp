@@ -21,7 +21,7 @@ BOOST_AUTO_TEST_CASE(view_by_view_is_the_dense_problem_with_the_motions_eliminat
     std::mt19937_64 random(8);
     std::normal_distribution<double> normal;
 
-    motion::Chain chain(scene.X_told, window::Gauge::rigid, axes);
+    motion::Chain chain({scene.X_told, window::Gauge::rigid}, axes);
     chain.set_model(scene.X_told);  // at the reference: u = 0, and the slice's frame is the model's
     MatX H = MatX::Zero(n + views * states, n + views * states);
     VecX g = VecX::Zero(n + views * states);
@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(forwards_and_backwards_meet_in_the_dense_problem) {
     const double dt = 0.4, q = 2.0;
     std::mt19937_64 random(9);
     std::normal_distribution<double> normal;
-    motion::Chain before(scene.X_told, window::Gauge::rigid, 1), after(scene.X_told, window::Gauge::rigid, 1);
+    motion::Chain before({scene.X_told, window::Gauge::rigid}, 1), after({scene.X_told, window::Gauge::rigid}, 1);
     MatX H = MatX::Zero(n + views * states, n + views * states);
     H.block(n, n, states, states) += before.motion_information();
     std::vector<MatX> J;

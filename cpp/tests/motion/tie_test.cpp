@@ -16,7 +16,7 @@ namespace {
 motion::Attitude attitude() { return {so3::exp(Vec3(0.3, -0.2, 1.1)), 1e-3}; }
 
 motion::Tie tie_at(Kind kind, window::Gauge gauge, const Scene& scene, const std::vector<Vec3>& X, const SE3& T) {
-    window::Slice slice(scene.X_told, gauge);
+    window::Slice slice({scene.X_told, gauge});
     slice.linearise(X);
     window::GaugeBasis rate_t(3 * static_cast<Eigen::Index>(X.size()), 7);
     slice.gauge_rate(rate_t);

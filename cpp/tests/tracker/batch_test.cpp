@@ -149,14 +149,14 @@ BOOST_AUTO_TEST_CASE(a_constant_error_of_the_range_finder_is_found_where_the_ran
     for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
         const double bias = seed % 2 == 0 ? 2.5 : -2.5;
         const Scene scene = approach(seed);
-        BatchReadings readings = readings_of(scene, bias, seed);
-        readings.range_bias_sigma_m = 3.0;
+        const BatchReadings readings = readings_of(scene, bias, seed);
         TrackerOptions options;
+        options.range_bias_sigma_m = 3.0;
         if (seed > 3) options.motion = motion::Kind::range;
         const Refinement found =
             refine(scene.camera, scene.X_told, independent_prior(scene, 1.0), stamped(scene), options, readings);
-        BOOST_TEST(found.range_bias_sigma_m < 2.0);
-        nees += std::pow((found.range_bias_m - bias) / found.range_bias_sigma_m, 2);
+        BOOST_TEST(found.range_bias.sigma_m < 2.0);
+        nees += std::pow((found.range_bias.bias_m - bias) / found.range_bias.sigma_m, 2);
         BOOST_TEST(score(found, scene).nees < 10.0);
     }
     BOOST_TEST(nees < 22.5);  // chi-square, 6 dof, 99.9 %
@@ -175,6 +175,6 @@ BOOST_AUTO_TEST_CASE(readings_of_a_batch_that_mean_nothing_are_refused) {
     refused([](BatchReadings& r) { r.ranges.push_back({0, {6, 100.0, 0.5}}); });
     refused([](BatchReadings& r) { r.ranges.push_back({0, {kOrigin, 100.0, 0.5}}); });
     refused([](BatchReadings& r) { r.lengths.push_back({0, 0, 1.0, 0.1}); });
-    refused([](BatchReadings& r) { r.range_bias_sigma_m = -1.0; });
+    BOOST_CHECK_THROW(validate(TrackerOptions{.range_bias_sigma_m = -1.0}), std::invalid_argument);
     refused([](BatchReadings& r) { r.attitudes.push_back({0, {2.0 * Mat33::Identity(), 0.1}}); });
 }

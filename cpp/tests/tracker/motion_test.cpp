@@ -17,6 +17,7 @@ struct Flown {
     double range_rms = 0.0;  ///< second half [m]
     double nees = 0.0;       ///< of the range, mean
     int believed = 0, refused = 0;
+    RangeBias range_bias;
 };
 
 /// 10 s along an arc at 1 km with 4 px of noise; `reading(k)` adds what other sensors say at frame k.
@@ -40,10 +41,28 @@ Flown fly(const Scene& scene, const TrackerOptions& options, const Reading& read
     flown.range_rms = std::sqrt(flown.range_rms);
     flown.believed = tracker.ranges_believed();
     flown.refused = tracker.ranges_refused();
+    flown.range_bias = tracker.range_bias();
     return flown;
 }
 
 Scene flight(std::uint64_t seed) { return make_scene(20, 250, 0.5, 4.0, 1.0, seed); }
+
+/// From 1 km to 300 m, along an arc.
+Scene approach(std::uint64_t seed) {
+    Scene scene = make_scene(20, 250, 0.5, 0.5, 1.0, seed);
+    std::mt19937_64 random(seed + 1000);
+    for (std::size_t k = 0; k < scene.views.size(); ++k) {
+        const double share = static_cast<double>(k) / static_cast<double>(scene.views.size());
+        scene.T_true[k] = look_at(3.3 + 0.5 * share, 0.26, 1000.0 - 700.0 * share, Vec3(70.0, 0.0, 16.0));
+        scene.views[k].clear();
+        for (int j = 0; j < 20; ++j) {
+            Vec2 z;
+            if (!scene.camera.project(scene.T_true[k] * scene.X_true[static_cast<std::size_t>(j)], z)) continue;
+            scene.views[k].push_back({j, z + gaussian(random, 0.5).head<2>(), 0.25 * Mat22::Identity()});
+        }
+    }
+    return scene;
+}
 constexpr auto kNothing = [](Tracker&, std::int64_t, const SE3&) {};
 
 TrackerOptions smooth(motion::Kind kind) {
@@ -100,6 +119,30 @@ BOOST_AUTO_TEST_CASE(a_range_to_the_origin_is_one_to_a_landmark_that_is_known) {
         if (stamp % (12 * kFrame) == 0) t.add_range(stamp, T.t.norm(), 0.5, Tracker::kOrigin);
     });
     BOOST_TEST(flown.range_rms < 4.0);
+}
+
+BOOST_AUTO_TEST_CASE(what_a_range_finder_always_reads_too_much_is_found_while_the_range_changes) {
+    double nees = 0.0, told_nothing = 0.0, estimated = 0.0;
+    constexpr int kSeeds = 12;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 100);
+        const double bias = gaussian(random, 3.0).x();
+        const Scene scene = approach(static_cast<std::uint64_t>(seed));
+        TrackerOptions options = smooth(seed % 2 == 0 ? motion::Kind::none : motion::Kind::range);
+        const auto reading = [&](Tracker& tracker, std::int64_t stamp, const SE3& T) {
+            if (stamp % (5 * kFrame) != 0) return;
+            tracker.add_range(stamp, (T * scene.X_true[2]).norm() + bias + gaussian(random, 0.1).x(), 0.1, 2);
+        };
+        told_nothing += std::pow(fly(scene, options, reading).range_rms, 2) / kSeeds;
+        options.range_bias_sigma_m = 3.0;
+        const Flown flown = fly(scene, options, reading);
+        estimated += std::pow(flown.range_rms, 2) / kSeeds;
+        BOOST_TEST(flown.range_bias.sigma_m < 1.5);
+        nees += std::pow((flown.range_bias.bias_m - bias) / flown.range_bias.sigma_m, 2) / kSeeds;
+    }
+    BOOST_TEST(nees > 0.3);  // 99 % bands of chi-square with 12 degrees of freedom
+    BOOST_TEST(nees < 2.2);
+    BOOST_TEST(estimated < 0.5 * told_nothing);
 }
 
 BOOST_AUTO_TEST_CASE(a_known_length_fixes_the_scale) {

@@ -19,7 +19,7 @@ std::vector<Vec3> transformed(const std::vector<Vec3>& X, double s, const Vec3& 
 
 /// Compresses views at several, different models, as a tracker does while its model still moves.
 window::CompressedViews compressed(const Scene& scene, std::mt19937_64& random) {
-    window::CompressedViews sum(scene.X_told, window::Gauge::similarity);
+    window::CompressedViews sum({scene.X_told, window::Gauge::similarity});
     for (std::size_t k = 0; k < scene.views.size(); ++k) {
         std::vector<Vec3> X = transformed(scene.X_told, 1.0 + 0.01 * gaussian(random, 1.0).x(), gaussian(random, 0.02),
                                           gaussian(random, 1.0));
@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(a_compressed_view_is_the_view_at_the_model_it_was_taken_at)
     const MatX S = workspace.S.selfadjointView<Eigen::Lower>();
 
     window::Problem half = all;
-    half.compressed.emplace_back(scene.X_told, window::Gauge::similarity);
+    half.compressed.emplace_back(window::Reference{scene.X_told, window::Gauge::similarity});
     for (std::size_t k = 3; k < 6; ++k) half.compressed.front().add(all.views[k], all.X);
     half.views.resize(3, window::ViewBlock(12));
     BOOST_TEST_REQUIRE(window::linearise(half));

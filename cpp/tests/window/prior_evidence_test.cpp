@@ -17,7 +17,7 @@ window::PriorFactors judge(double data_sigma, double truth, std::uint64_t seed) 
     const int n = 3 * kLandmarks;
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
-    window::LandmarkPrior prior{VecX::Zero(n), MatX::Identity(n, n)};
+    window::LandmarkPrior prior{VecX::Zero(n), MatX::Identity(n, n), VecX::Zero(n)};
     const MatX A = MatX::Identity(n, n) / (data_sigma * data_sigma);
     const VecX x = VecX::NullaryExpr(n, [&] { return truth * normal(random) + data_sigma * normal(random); });
     return window::PriorEvidence(kLandmarks).evaluate(prior, A, A * x);
@@ -47,7 +47,7 @@ BOOST_AUTO_TEST_CASE(data_that_say_nothing_leave_the_told_factor_likely_and_the_
 
 BOOST_AUTO_TEST_CASE(numbers_that_are_not_finite_change_nothing) {
     const int n = 3 * kLandmarks;
-    const window::LandmarkPrior prior{VecX::Zero(n), MatX::Identity(n, n)};
+    const window::LandmarkPrior prior{VecX::Zero(n), MatX::Identity(n, n), VecX::Zero(n)};
     const window::PriorFactors found =
         window::PriorEvidence(kLandmarks).evaluate(prior, MatX::Constant(n, n, std::nan("")), VecX::Zero(n));
     BOOST_TEST(found.likely == 1.0);

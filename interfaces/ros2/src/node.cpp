@@ -65,6 +65,7 @@ class TrackerNode : public rclcpp::Node {
             declare_parameter<double>("correlation_log_range", options.correlation_log_range);
         options.design_effect = declare_parameter<double>("design_effect", options.design_effect);
         options.range_to_origin = declare_parameter<bool>("range_to_origin", options.range_to_origin);
+        options.range_bias_sigma_m = declare_parameter<double>("range_bias_sigma_m", options.range_bias_sigma_m);
         options.seed = static_cast<std::uint64_t>(
             declare_parameter<std::int64_t>("seed", static_cast<std::int64_t>(options.seed)));
         return options;

@@ -35,7 +35,7 @@ class Refinement:
     ranges_refused: int = 0
     """Readings that did not agree with the others, or were far from any view."""
     range_bias_m: float = 0.0
-    """Constant error of the range finder [m], reading less distance, where one was looked for."""
+    """What the range finder always reads too much [m], if `TrackerOptions.range_bias_sigma_m` asks for it."""
     range_bias_sigma_m: float = 0.0
     """One standard deviation of it [m]."""
 
@@ -55,7 +55,6 @@ def refine(
     *,
     ranges: Iterable[RangeReading] = (),
     attitudes: Iterable[AttitudeReading] = (),
-    range_bias_sigma_m: float = 0.0,
 ) -> Refinement:
     """All views of a flight in one maximum a posteriori estimate of landmarks and poses, docs/estimator.md section 5.
 
@@ -65,8 +64,6 @@ def refine(
     Parameters
     ----------
     ranges, attitudes : readings in any order; `TrackerOptions.range_to_origin` is set if one is to the origin
-    range_bias_sigma_m : what the range finder may be off by, always the same, one standard deviation [m]; it is then
-        estimated, docs/range.md eq. (5)
 
     Raises ValueError as `Tracker` does.
     """
@@ -85,7 +82,7 @@ def refine(
         np.concatenate([view.pixels for view in views] or [np.empty((0, 2))]),
         np.concatenate([view.covariances for view in views] or [np.empty((0, 2, 2))]),
         options.to_core(),
-        _readings(target, index, ranges, attitudes, range_bias_sigma_m),
+        _readings(target, index, ranges, attitudes),
     )
     return Refinement(
         estimates=tuple(to_estimate(view.frame, e, target.landmarks) for view, e in zip(views, estimates, strict=True)),
@@ -104,15 +101,10 @@ def refine(
 
 
 def _readings(
-    target: Target,
-    index: LandmarkIndex,
-    ranges: Iterable[RangeReading],
-    attitudes: Iterable[AttitudeReading],
-    range_bias_sigma_m: float,
+    target: Target, index: LandmarkIndex, ranges: Iterable[RangeReading], attitudes: Iterable[AttitudeReading]
 ) -> _core.BatchReadings:
     """What is known besides the views, as the core's record."""
     core = _core.BatchReadings()
-    core.range_bias_sigma_m = range_bias_sigma_m
     for distance in target.distances:
         a, b = index(distance.between)
         core.add_length(a, b, distance.length_m, distance.sigma_m)

@@ -48,6 +48,9 @@ class TrackerOptions:
     """So many times more errs the pose of a view, squared, since its landmarks err alike [-], docs/motion.md (16)."""
     range_to_origin: bool = _D.range_to_origin
     """Whether readings of the range to the target's origin will come, docs/range.md."""
+    range_bias_sigma_m: float = _D.range_bias_sigma_m
+    """What the range finder may always read too much, one standard deviation [m]; above 0 it is estimated,
+    docs/range.md eq. (5)."""
     seed: int = _D.seed
     """Of the consensus search."""
 

@@ -112,6 +112,14 @@ class Tracker:
         return self._core.ranges_refused
 
     @property
+    def range_bias(self) -> tuple[float, float]:
+        """What the range finder always reads too much, and one standard deviation of it [m]; docs/range.md eq. (5).
+
+        Zeros without `TrackerOptions.range_bias_sigma_m`.
+        """
+        return self._core.range_bias
+
+    @property
     def noise_factor(self) -> float:
         """Estimated ratio of the true to the told pixel covariances [-], docs/estimator.md eq. (14)."""
         return self._core.noise_factor

@@ -14,7 +14,7 @@ namespace fairlead::motion {
 /// earlier motion integrated out, docs/motion.md eq. (7)-(9). No function of it changes along the gauge of the model.
 class Chain {
   public:
-    Chain(std::span<const Vec3> X_ref, window::Gauge gauge, int axes);
+    Chain(const window::Reference& reference, int axes);
 
     /// Forgets the motion, keeps what is known of the shape.
     void restart() noexcept;

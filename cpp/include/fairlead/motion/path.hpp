@@ -22,7 +22,7 @@ class Path {
   public:
     static constexpr std::size_t kKept = 1024;  ///< views of the past that are gone through again
 
-    Path(Kind kind, double density, std::span<const Vec3> X_ref, window::Gauge gauge, std::size_t kept = kKept);
+    Path(Kind kind, double density, const window::Reference& reference, std::size_t kept = kKept);
 
     void restart() noexcept;
     void advance(std::int64_t stamp_ns, std::span<const Vec3> X, const std::optional<Attitude>& attitude) noexcept;
@@ -49,8 +49,6 @@ class Path {
                               const window::Problem& problem) noexcept;
     /// All of them once backwards and once forwards, poses and motions fitted to the model as it is.
     void smooth(const window::Problem& problem) noexcept;
-    /// Every range of theirs made shorter.
-    void move_ranges(double by_m) noexcept;
     /// Of their poses, the structure's uncertainty in them; docs/motion.md eq. (14). Allocates.
     [[nodiscard]] std::vector<Mat66> covariances(const window::Problem& problem, const MatX& Sigma);
     [[nodiscard]] const window::ViewBlock& view(std::size_t i) const noexcept {

@@ -30,6 +30,7 @@ struct TrackerOptions {
     double correlation_log_range = 0.0;  ///< [-] the same by the logarithm of the range; 0 of each: makes no difference
     double design_effect = 1.0;          ///< [-] by which errors that its landmarks share widen a view's pose
     bool range_to_origin = false;        ///< readings of the range to the target's origin will come
+    double range_bias_sigma_m = 0.0;     ///< [m] what the range finder may always read too much, one sigma; 0: nothing
     std::uint64_t seed = 0;              ///< of the consensus search
 };
 

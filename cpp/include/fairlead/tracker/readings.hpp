@@ -21,10 +21,6 @@ void require_positive(double value, const std::string& what);
 [[nodiscard]] bool is_rotation(const Mat33& R) noexcept;
 void require_attitude(const motion::Attitude& attitude);
 void require_length(const window::LengthMeasurement& length, int landmarks);
-/// The number of the landmark that a range is to; kOrigin is one more than there are, if it may be.
-[[nodiscard]] int range_landmark(int landmark, int landmarks, bool to_origin);
-/// One more landmark, known exactly: the origin of the told frame.
-void add_origin(std::vector<Vec3>& X, MatX& P);
 
 inline constexpr double kMaxRangeAge = 0.5;     ///< [s] between a range and the view it is used with
 inline constexpr double kMaxAttitudeAge = 0.1;  ///< [s] the same of an attitude

@@ -41,13 +41,16 @@ class Structure {
                               std::span<const window::RangeMeasurement> ranges,
                               const std::optional<motion::Attitude>& attitude) noexcept;
 
-    [[nodiscard]] std::span<const Vec3> landmarks() const noexcept { return problem_.X; }
+    [[nodiscard]] std::span<const Vec3> landmarks() const noexcept { return std::span(problem_.X).first(landmarks_); }
     [[nodiscard]] std::span<const Mat33> landmark_covariances() const noexcept { return blocks_; }
     /// What is reported of the model: the covariance with the curvature of its gauge.
     [[nodiscard]] MatX covariance() const;
-    [[nodiscard]] const MatX& covariance_linear() const noexcept { return Sigma_; }
+    [[nodiscard]] MatX covariance_linear() const { return of_landmarks(Sigma_); }
     [[nodiscard]] std::vector<Vec3> landmarks_told() const;
-    [[nodiscard]] MatX covariance_told() const { return problem_.prior->information.inverse(); }
+    [[nodiscard]] MatX covariance_told() const { return of_landmarks(problem_.prior->information).inverse(); }
+    /// The entries of X and their covariance, what is no landmark included.
+    [[nodiscard]] std::span<const Vec3> entries() const noexcept { return problem_.X; }
+    [[nodiscard]] const MatX& entries_covariance() const noexcept { return Sigma_; }
     [[nodiscard]] double determined_directions() const noexcept { return determined_; }
     [[nodiscard]] double noise_factor() const noexcept { return problem_.noise_factor; }
     [[nodiscard]] double prior_factor() const noexcept { return problem_.prior_factors.likely; }
@@ -77,6 +80,14 @@ class Structure {
     void publish() noexcept;
     void judge_prior() noexcept;
 
+    [[nodiscard]] std::vector<Vec3> told() const;
+    [[nodiscard]] MatX of_landmarks(const MatX& all) const {
+        const auto n = 3 * static_cast<Eigen::Index>(landmarks_);
+        return all.topLeftCorner(n, n);
+    }
+
+    int aside_;              ///< entries of X that are no landmarks, the last ones
+    std::size_t landmarks_;  ///< the others
     window::Problem problem_;
     window::Workspace workspace_;
     std::vector<window::ViewBlock> pool_;

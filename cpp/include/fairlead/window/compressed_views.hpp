@@ -18,7 +18,7 @@ namespace fairlead::window {
 /// c, u = y(X) - X_ref, docs/estimator.md eq. (11). It is invariant under the gauge of X, exactly and for ever.
 class CompressedViews {
   public:
-    CompressedViews(std::span<const Vec3> X_ref, Gauge gauge);
+    explicit CompressedViews(const Reference& reference);
 
     /// Takes a view linearised at X (told covariances, robust weights frozen) with its state factored.
     void add(const ViewBlock& view, std::span<const Vec3> X) noexcept;

@@ -17,6 +17,9 @@ namespace fairlead::window {
 [[nodiscard]] StateByPoint reduced_rows(const ViewBlock& view, const PointTerm& term, const Vec3& X) noexcept;
 
 /// State step that belongs to a structure step dX: -(H + damping)^-1 (g + H_px dX), eq. (9).
+/// Step of what a term sees: the landmark's own, and that of a bias along the line of sight.
+[[nodiscard]] Vec3 point_step(const PointTerm& term, const VecX& dX) noexcept;
+
 [[nodiscard]] StateVector back_substitute(const ViewBlock& view, std::span<const Vec3> X_target,
                                           const VecX& dX) noexcept;
 

@@ -13,20 +13,25 @@ namespace fairlead::window {
 /// sigma holds three standard deviations per landmark [m]; scale_sigma [-] is the common error of scale.
 [[nodiscard]] MatX landmark_covariance(std::span<const Vec3> X0, std::span<const Vec3> sigma, double scale_sigma);
 
-/// X ~ N(mean, alpha P0), held as mean and information P0^-1.
+/// X ~ N(mean, alpha P0), held as mean and information P0^-1; its last entries may be no landmarks, but N(0, P0)
+/// whatever alpha is.
 struct LandmarkPrior {
     VecX mean;         ///< 3N [m], landmark-major
     MatX information;  ///< 3N x 3N [1/m^2]
+    VecX aside;        ///< 3N [1/m^2], about zero: of the entries that are no landmarks, which no factor scales
 
     [[nodiscard]] int landmarks() const noexcept { return static_cast<int>(mean.size() / 3); }
 };
 
 /// Throws std::invalid_argument unless the covariance is symmetric, finite and positive semidefinite. Directions
 /// without variance (a landmark with sigma 0 is fixed) get kFixedSigma of the model's extent, so that the information
-/// stays finite.
-[[nodiscard]] LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance);
+/// stays finite. The last `aside` entries are no landmarks; of their covariance the diagonal counts.
+[[nodiscard]] LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance, int aside = 0);
 
 /// Squared Mahalanobis distance (X - X0)^T P0^-1 (X - X0) [-]. Allocates nothing.
+/// The same of what is set aside, sum x^2 / P0.
+[[nodiscard]] double aside_cost(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept;
+
 [[nodiscard]] double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept;
 
 /// Standard deviation of what is held fixed, in units of the model's extent.

@@ -28,19 +28,22 @@ struct Measurement {
     Mat22 information = Mat22::Identity();  ///< S^-1 [1/px^2]
 };
 
-/// A measured distance from the camera to a landmark, |T X_j|.
+/// A measured distance from the camera to a landmark, |T X_j|, and what the range finder always reads too much.
 struct RangeMeasurement {
     int landmark = -1;
     double range_m = 0.0;
     double sigma_m = 1.0;
+    int bias = -1;  ///< where in X that is, as its first coordinate; -1: nowhere, it is right
 };
 
 /// One measurement of a landmark linearised at (T, X): whatever it measures, it depends on T X_j alone, so that B = d h
 /// / d X_target is all there is to know, docs/estimator.md eq. (5).
 struct PointTerm {
     int landmark = -1;
-    Mat33 M = Mat33::Zero();  ///< w B^T S^-1 B, the landmark's own information
-    Vec3 v = Vec3::Zero();    ///< w B^T S^-1 r, the gradient with respect to the landmark
+    Mat33 M = Mat33::Zero();    ///< w B^T S^-1 B, the landmark's own information
+    Vec3 v = Vec3::Zero();      ///< w B^T S^-1 r, the gradient with respect to the landmark
+    int bias = -1;              ///< of a range: a metre of it is like a metre of the landmark along the line of sight
+    Vec3 along = Vec3::Zero();  ///< which is this, in the target frame
 };
 
 /// One view: state, measurements, and their linearisation. Sized once; never grows beyond the number of landmarks.
