@@ -98,7 +98,7 @@ void Batch::share_information() {
     for (const Candidate* candidate : in_time()) {
         if (candidate->view < 0) continue;
         window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate->view)];
-        view.share = shares.of(outlook(view.stamp_ns, view.state.T_camera_target, problem_.X));
+        view.share = shares.of(outlook(view.stamp_ns, view.state.T_camera_target, points()));
         shares.take();
     }
 }

@@ -61,9 +61,13 @@ class Batch {
     [[nodiscard]] const window::ViewBlock& block(const Candidate& candidate) const;
     [[nodiscard]] Mat66 covariance(const Candidate& candidate) const;
 
-    /// Those that were told.
+    /// How many were told.
     [[nodiscard]] std::size_t landmarks() const {
         return problem_.X.size() - static_cast<std::size_t>(appended_entries(options_));
+    }
+    /// The entries of X that are landmarks, told or appended.
+    [[nodiscard]] std::span<const Vec3> points() const {
+        return std::span(problem_.X).first(problem_.X.size() - static_cast<std::size_t>(set_aside(options_)));
     }
     [[nodiscard]] UncertainModel model() const { return {problem_.X, blocks_}; }
     [[nodiscard]] double cost(const window::ViewBlock& view, const SE3& T) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "batch.hpp"
 #include "fairlead/tracker/readings.hpp"
@@ -59,9 +60,9 @@ Refinement Batch::result() {
     for (std::size_t k = 0; k < candidates_.size(); ++k)
         refinement.estimates.push_back(estimate(candidates_[k], refinement.inliers[k]));
     refinement.X.assign(problem_.X.begin(), problem_.X.begin() + static_cast<std::ptrdiff_t>(landmarks()));
-    const int points = problem_.landmarks() - set_aside(options_);
-    MatX Sigma = Sigma_.topLeftCorner(3 * points, 3 * points);
-    if (last_.ok) window::add_gauge_curvature(std::span(problem_.X).first(static_cast<std::size_t>(points)), Sigma);
+    const Eigen::Index size = 3 * std::ssize(points());
+    MatX Sigma = Sigma_.topLeftCorner(size, size);
+    if (last_.ok) window::add_gauge_curvature(points(), Sigma);
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(landmarks());
     refinement.covariance = Sigma.topLeftCorner(n, n);
     refinement.noise_factor = problem_.noise_factor;

@@ -54,22 +54,23 @@ StateMatrix state_covariance(const ViewBlock& view, std::span<const Vec3> X_targ
 
 void update_noise_factor(Problem& problem, double determined) noexcept {
     double squares = 0.0;
-    double freedom = -determined;
-    double views_in_all = 0.0;
+    double inliers = 0.0;
+    double views = 0.0;
     for (const ViewBlock& view : problem.views) {
         squares += view.inlier_squares;
-        freedom += 2.0 * view.inliers - ViewState::kDim * view.share;
-        views_in_all += view.share;
+        inliers += view.inliers;
+        views += view.share;
     }
-    for (CompressedViews& views : problem.compressed) {
-        if (views.empty()) continue;
-        squares += views.value(problem.X);
-        freedom += 2.0 * views.inliers() - ViewState::kDim * views.views();
-        views_in_all += views.views();
+    for (CompressedViews& compressed : problem.compressed) {
+        if (compressed.empty()) continue;
+        squares += compressed.value(problem.X);
+        inliers += compressed.inliers();
+        views += compressed.views();
     }
     squares = std::max(squares, 0.0) / gaussian_consistency(problem.loss.threshold);
-    freedom = std::max(freedom, 0.0);
-    const double shared = (problem.design_effect - 1.0) * ViewState::kDim * views_in_all;
+    const double poses = ViewState::kDim * views;
+    const double freedom = std::max(2.0 * inliers - poses - determined, 0.0);
+    const double shared = (problem.design_effect - 1.0) * poses;
     const double factor = (kNoiseBelief + squares) / (kNoiseBelief + freedom);
     const double own = (kNoiseBelief + std::max(freedom - shared, 0.0)) / (kNoiseBelief + freedom);
     problem.noise_factor = factor;

@@ -81,7 +81,7 @@ def demo_ship(config: DemoConfig, progress: ProgressFactory = silent) -> ShipRes
     )
     run.track(alone)
     report = evaluate_runs(
-        {"epnp": alone.output, "fairlead": pixels.output},
+        {"fairlead": pixels.output, "epnp": alone.output},
         pixels.truth,
         target_true=clip / "target_true.toml",
         output=config.output,

@@ -31,8 +31,8 @@ class Bound:
 
     @property
     def model_rms_m(self) -> float:
-        """Over landmarks."""
-        return float(np.sqrt(3.0 * np.diag(self.X_covariance).mean()))
+        """Over landmarks; NaN where a view without a pose has no bound."""
+        return float(np.sqrt(3.0 * np.diag(self.X_covariance).mean())) if self.X_covariance.size else float("nan")
 
 
 def bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0, design_effect: float = 1.0) -> Bound:

@@ -70,11 +70,10 @@ class Course:
         return self.epochs * self.epoch // self.batch
 
     def size_at(self, epoch: int) -> int:
-        """Side of the crops [px]. RTMPose takes one size; who starts from a trained network leaves out the smallest."""
-        if self.network.startswith("rtmpose"):
+        """Side of the crops [px]. RTMPose takes one size; who starts from a trained network sees whole crops alone."""
+        if self.network.startswith("rtmpose") or self.start is not None:
             return self.size
-        stages = STAGES if self.start is None else STAGES[1:]
-        quarters = (quarters for share, quarters in stages if epoch < share * self.epochs)
+        quarters = (quarters for share, quarters in STAGES if epoch < share * self.epochs)
         return self.size // 4 * next(quarters, 4)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-LOSSES = ("loss", "map", "distance", "covariance", "visibility", "presence")
+LOSSES = ("loss", "map", "distance", "similarity", "covariance", "visibility", "presence")
 SHARES = ("within_5_px", "visibility_right", "presence_right", "nees_median")
 PANELS = (
     ("loss", tuple(f"train/{part}" for part in LOSSES), "linear"),

@@ -18,6 +18,7 @@ from fairlead.train.losses import (
     landmark_weight,
     mean_of,
     presence_loss,
+    similarity_loss,
     there,
     visibility_loss,
     whitened,
@@ -27,6 +28,7 @@ from fairlead.train.networks.prediction import Prediction
 from fairlead.train.networks.rtmpose import RtmPose
 
 DISTANCE_WEIGHT = 0.1
+SIMILARITY_WEIGHT = 0.2
 COVARIANCE_WEIGHT = 0.2
 VISIBILITY_WEIGHT = 0.5
 PRESENCE_WEIGHT = 0.5
@@ -69,13 +71,14 @@ class Lesson(lightning.LightningModule):
         return self.network(normalise(images).contiguous(memory_format=torch.channels_last))
 
     def training_step(self, batch: Batch, index: int) -> Tensor:
-        """Sum of the five losses."""
+        """Sum of the six losses."""
         del index
         prediction = self(batch.images)
         weight = landmark_weight(batch)
         parts = {
             "map": mean_of(self.network.map_loss(prediction.maps, batch.pixels), weight),
             "distance": DISTANCE_WEIGHT * mean_of(distance_loss(prediction, batch), weight),
+            "similarity": SIMILARITY_WEIGHT * similarity_loss(prediction, batch).mean(),
             "covariance": COVARIANCE_WEIGHT * mean_of(covariance_loss(prediction, batch), weight),
             "visibility": VISIBILITY_WEIGHT * visibility_loss(prediction, batch).mean(),
             "presence": PRESENCE_WEIGHT * presence_loss(prediction, batch).mean(),

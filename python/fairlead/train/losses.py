@@ -9,6 +9,8 @@ from torch import Tensor
 from fairlead.train.labels import Batch
 from fairlead.train.networks.prediction import Prediction
 
+FOUND_PX = 10.0
+"""A landmark that is farther off is lost: its error says nothing of what a crop's errors share."""
 HIDDEN_WEIGHT = 0.3
 """Of a hidden landmark: where it must be is told by the rest of the ship, but less well."""
 
@@ -70,3 +72,21 @@ def presence_loss(prediction: Prediction, batch: Batch) -> Tensor:
 def distance_loss(prediction: Prediction, batch: Batch) -> Tensor:
     """(b, n): Huber's loss of the error, 1 px at the corner [px]."""
     return F.smooth_l1_loss(prediction.pixels, batch.pixels, reduction="none", beta=1.0).sum(-1)
+
+
+def similarity_loss(prediction: Prediction, batch: Batch) -> Tensor:
+    """(b,): Huber's loss of what the errors of a crop share, 1 px at the corner [px]; 0 where most landmarks are lost.
+
+    The similarity t + s q + r q' that fits the errors best, q the landmarks about their mean and of unit rms, q' the
+    same turned by 90 degrees: a pose errs by t, s and r, and hardly by the rest. docs/networks.md section 3.
+    """
+    weight = landmark_weight(batch)
+    share = (weight / weight.sum(1, keepdim=True).clamp_min(1.0))[..., None]
+    e = prediction.pixels - batch.pixels
+    found = (share[..., 0] * (e.norm(dim=-1) < FOUND_PX)).sum(1) > 0.5
+    e = share * e
+    about = batch.pixels - (share * batch.pixels).sum(1, keepdim=True)
+    q = about / (share * about.square()).sum((1, 2), keepdim=True).sqrt().clamp_min(1.0)
+    along, across = (e * q).sum((1, 2)), (e[..., 1] * q[..., 0] - e[..., 0] * q[..., 1]).sum(1)
+    shared = torch.stack([*e.sum(1).unbind(-1), along, across], dim=-1)
+    return found * F.smooth_l1_loss(shared, torch.zeros_like(shared), reduction="none", beta=1.0).sum(-1)

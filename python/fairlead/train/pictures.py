@@ -61,13 +61,15 @@ def open_pictures(folder: Path, landmarks: tuple[str, ...], size: int, seed: int
     def crops() -> Iterator[Picture]:
         for each in labelled:
             image = read_image(each.path)
-            if image.shape[:2] != (size, size):
-                raise InputError(each.path, f"expected {size} x {size} px, got {image.shape[1]} x {image.shape[0]}")
+            height, width = image.shape[:2]
+            if height != width:
+                raise InputError(each.path, f"expected a square, got {width} x {height} px")
+            scale = size / width
             yield Picture(
-                image=image,
-                pixels=each.label.pixels,
+                image=image if width == size else cut_resized(image, (0, 0), (width, width), (size, size)),
+                pixels=(each.label.pixels + 0.5) * scale - 0.5,
                 visibility=np.array(each.label.visibility),
-                focal_px=float(each.label.K[0, 0]),
+                focal_px=float(each.label.K[0, 0]) * scale,
                 T_camera_target=each.label.T_camera_target,
             )
 

@@ -74,7 +74,7 @@ def test_the_published_table_has_a_column_per_network_and_method(made):
             if line["network"] == network and line["method"] in ("epnp", "window", *OURS):
                 assert row[f"{network}_{line['method']}"] == line["translation_all_m"]
     said = (made / "report.md").read_text(encoding="utf-8")
-    assert "Not here: PP-TinyPose-EPnP: no such network was given" in said
+    assert "Not here: PP-TinyPose on orbit-2.0: no images and no table of its detections" in said
 
 
 def test_theirs_stand_beside_ours_and_are_marked(made):

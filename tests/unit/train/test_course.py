@@ -155,7 +155,7 @@ def test_small_crops_come_first() -> None:
     assert sizes == [128] * 5 + [192] * 2 + [256] * 3
     assert Course(network="rtmpose-t", output=Path(), crops=40_960).size_at(0) == 256
     begun = Course(network="heat-t", output=Path(), crops=40_960, start=Path("a.onnx"))
-    assert [begun.size_at(epoch) for epoch in range(10)] == [192] * 7 + [256] * 3
+    assert [begun.size_at(epoch) for epoch in range(10)] == [256] * 10
 
 
 def test_the_rate_rises_stays_and_falls() -> None:

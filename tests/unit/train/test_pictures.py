@@ -72,6 +72,18 @@ def test_a_clip_is_a_sequence(repository: Path) -> None:
     )
 
 
+def test_crops_are_shown_at_the_size_of_the_network(spots: Path) -> None:
+    """Half the side: every other centre lies between two, at (p + 1/2) / 2 - 1/2."""
+    (count, whole), (_, halved) = (open_pictures(spots, NAMES, size, seed=0) for size in (128, 64))
+    assert count > 0
+    for one, half in zip(whole, halved, strict=True):
+        assert half.image.shape == (64, 64, 3)
+        assert np.allclose(half.pixels, 0.5 * one.pixels - 0.25)
+        assert half.focal_px == 0.5 * one.focal_px
+        means = one.image.reshape(64, 2, 64, 2, 3).mean(axis=(1, 3))
+        assert np.abs(half.image - means).max() < 1.5
+
+
 def test_a_sequence_of_other_landmarks_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="expected the landmarks a, b, c"):
         list(open_pictures(sequence(tmp_path / "flight", 30.0), ("a", "b", "c"), 128, seed=0)[1])
