@@ -12,10 +12,23 @@ CompressedViews::CompressedViews(const Reference& reference) : slice_(reference)
     for (VecX* vector : {&eta_, &gradient_, &q_}) vector->setZero(n);
 }
 
+/// Of a range whose bias is unknown: the bias moves the landmark along the line of sight.
+void CompressedViews::add_bias(const PointTerm& term, const StateByPoint& rows, const Vec3& gradient) noexcept {
+    const int a = 3 * term.landmark;
+    const int b = 3 * term.bias;
+    const Vec3 M_along = term.M * term.along;
+    const Vec3 across = slice_.lift(a) * M_along;
+    A_.row(b).head<ViewState::kDim>() += term.along.transpose() * rows;
+    q_[b] += term.along.dot(gradient);
+    Lambda_.block<3, 1>(a, b) += across;
+    Lambda_.block<1, 3>(b, a) += across.transpose();
+    Lambda_(b, b) += term.along.dot(M_along);
+}
+
 void CompressedViews::add(const ViewBlock& view, std::span<const Vec3> X) noexcept {
     slice_.align(X);
     const VecX& u = slice_.u();
-    const Mat33 G = slice_.similarity().R / slice_.similarity().s;  // d E / d y = G (d E / d X)
+    const Mat33& G = slice_.lift(0);  // d E / d y = G (d E / d X)
     const StateVector y = view.L_inverse * view.g;
     q_.setZero();
     A_.setZero();
@@ -26,14 +39,7 @@ void CompressedViews::add(const ViewBlock& view, std::span<const Vec3> X) noexce
         const Vec3 gradient = term.v - rows * y;
         q_.segment<3>(3 * a) += G * gradient;
         Lambda_.block<3, 3>(3 * a, 3 * a) += G * term.M * G.transpose();
-        if (term.bias < 0) continue;
-        const int b = 3 * term.bias;
-        const Vec3 M_along = term.M * term.along;
-        A_.row(b).head<ViewState::kDim>() += term.along.transpose() * rows;
-        q_[b] += term.along.dot(gradient);
-        Lambda_.block<3, 1>(3 * a, b) += G * M_along;
-        Lambda_.block<1, 3>(b, 3 * a) += (G * M_along).transpose();
-        Lambda_(b, b) += term.along.dot(M_along);
+        if (term.bias >= 0) add_bias(term, rows, gradient);
     }
     // b'^T u_lin and A' u_lin, A' = G M G^T - Y'^T Y', before Lambda takes the view in.
     const auto Yt = A_.leftCols<ViewState::kDim>();

@@ -40,6 +40,8 @@ class CompressedViews {
     [[nodiscard]] double inliers() const noexcept { return inliers_; }  ///< the same of their inliers
 
   private:
+    void add_bias(const PointTerm& term, const StateByPoint& rows, const Vec3& gradient) noexcept;
+
     Slice slice_;
     MatX Lambda_;
     VecX eta_;
