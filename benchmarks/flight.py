@@ -4,6 +4,7 @@
 
     python -m benchmarks.flight --runs 16 -o runs/flight
     python -m benchmarks.flight --runs 16 --motion range --sigmas 2 --correlation-time-s 0.5 -o runs/flight
+    python -m benchmarks.flight --runs 16 --motion range --range-sigma-m 0.5 --range-outliers 0.1 -o runs/flight
 
 90 degrees of arc at 1 km round the still frigate, model error 1 m. One file per noise, motion and run; what is done is
 kept. Writes flight.md. docs/motion.md.
@@ -28,6 +29,8 @@ INTERVAL_S = 0.04
 DENSITY_M_S25 = 0.5
 MOTIONS = ("none", "range", "target", "world")
 ATTITUDE_SIGMA_RAD = 3.5e-3
+FRAMES_A_READING = 25
+RANGE_OUTLIER_M = 50.0
 HEADINGS = ("px", "motion", "runs", "rms [m]", "rms / bound", "at 15 s", "last 2 s", "NEES / 6", "true model, PnP [m]")
 
 
@@ -60,15 +63,20 @@ def simulated(seed: int, sigma_px: float, correlation_time_s: float) -> "Simulat
     return replace(flight, views=views)
 
 
-def fly(seed: int, sigma_px: float, motion: str, density: float, correlation_time_s: float) -> dict[str, list[float]]:
+def fly(seed: int, sigma_px: float, motion: str, told: argparse.Namespace) -> dict[str, list[float]]:
     """Squared translation error [m^2], NEES of every pose, squared error of PnP with the true model."""
     import numpy as np
 
     from benchmarks.scoring import Answer, score
     from fairlead.tracker import Tracker, TrackerOptions
 
-    flight = simulated(seed, sigma_px, correlation_time_s)
-    options = TrackerOptions(motion=motion, jerk_density_m_s25=density, correlation_time_s=correlation_time_s)
+    flight = simulated(seed, sigma_px, told.correlation_time_s)
+    options = TrackerOptions(
+        motion=motion,
+        jerk_density_m_s25=told.density,
+        correlation_time_s=told.correlation_time_s,
+        range_to_origin=told.range_sigma_m > 0.0,
+    )
     tracker = Tracker(flight.target_told, flight.camera, options)
     rng = np.random.default_rng([SEED, 1, seed])
     found = []
@@ -76,6 +84,10 @@ def fly(seed: int, sigma_px: float, motion: str, density: float, correlation_tim
         if motion == "world":
             R = T[:3, :3].T @ _small_rotation(ATTITUDE_SIGMA_RAD * rng.standard_normal(3))
             tracker.add_attitude(view.stamp_ns, R, ATTITUDE_SIGMA_RAD)
+        if told.range_sigma_m > 0.0 and view.frame % FRAMES_A_READING == 0:
+            wrong_m = RANGE_OUTLIER_M * rng.choice([-1.0, 1.0]) if rng.random() < told.range_outliers else 0.0
+            reading_m = float(np.linalg.norm(T[:3, 3]) + told.range_sigma_m * rng.standard_normal() + wrong_m)
+            tracker.add_range(view.stamp_ns, reading_m, told.range_sigma_m)
         found.append(tracker.update(view))
     answer = Answer(
         T=np.stack([estimate.T_camera_target for estimate in found]),
@@ -137,6 +149,8 @@ def bound(sigma_px: float, density: float) -> list[float]:
 def _file(folder: Path, job: tuple[int, float, str], options: argparse.Namespace) -> Path:
     seed, sigma_px, motion = job
     kind = f"s{sigma_px:g}-{motion}-q{options.density:g}-tau{options.correlation_time_s:g}"
+    if options.range_sigma_m > 0.0:
+        kind += f"-r{options.range_sigma_m:g}-{options.range_outliers:g}"
     return folder / kind / f"{seed}.json"
 
 
@@ -144,7 +158,7 @@ def _complete(job: tuple[int, float, str], options: argparse.Namespace) -> str:
     path = _file(options.output, job, options)
     if not path.exists():
         seed, sigma_px, motion = job
-        row = fly(seed, sigma_px, motion, options.density, options.correlation_time_s)
+        row = fly(seed, sigma_px, motion, options)
         path.parent.mkdir(parents=True, exist_ok=True)
         partial_file = path.with_suffix(f".{os.getpid()}.partial")
         partial_file.write_text(json.dumps(row), encoding="utf-8")
@@ -182,6 +196,8 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--motion", nargs="+", choices=MOTIONS, default=["range", "target"])
     parser.add_argument("--density", type=float, default=DENSITY_M_S25, help="told, of the jerk [m/s^2.5]")
     parser.add_argument("--correlation-time-s", type=float, default=0.0, help="of the noise, and told [s]")
+    parser.add_argument("--range-sigma-m", type=float, default=0.0, help="a reading a second to the origin; 0: none")
+    parser.add_argument("--range-outliers", type=float, default=0.0, help="share of the readings that is 50 m off")
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("-o", "--output", type=Path, required=True)
     return parser.parse_args(arguments)

@@ -103,8 +103,8 @@ BOOST_AUTO_TEST_CASE(ranges_fix_the_range_and_wrong_ones_do_no_harm) {
                 tracker.add_range(stamp, p.norm() + wrong, 0.5, 2);
             });
         BOOST_TEST(flown.range_rms < 4.0);
-        BOOST_TEST(flown.refused == 2 + (outliers ? 4 : 0));
-        BOOST_TEST(flown.believed == 19 - (outliers ? 4 : 0));
+        BOOST_TEST(flown.refused == 3 + (outliers ? 4 : 0));
+        BOOST_TEST(flown.believed == 18 - (outliers ? 4 : 0));
     }
 }
 

@@ -11,7 +11,7 @@ namespace fairlead {
 
 /// Which readings of a range finder to believe: those that agree with the readings before them, docs/range.md eq. (2).
 ///
-/// The readings alone are followed by a Kalman filter of distance and closing speed; it starts with three readings that
+/// The readings alone are followed by a Kalman filter of distance and closing speed; it starts with four readings that
 /// lie on a line in time, and starts anew after three in a row that it did not believe. The images have no say, so that
 /// a wrong model cannot turn away a true range.
 class RangeGate {
