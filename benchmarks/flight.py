@@ -20,6 +20,8 @@ from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from benchmarks.table import write_table
+
 if TYPE_CHECKING:
     from fairlead.simulate import Simulation
 
@@ -67,7 +69,7 @@ def fly(seed: int, sigma_px: float, motion: str, told: argparse.Namespace) -> di
     """Squared translation error [m^2], NEES of every pose, squared error of PnP with the true model."""
     import numpy as np
 
-    from benchmarks.scoring import Answer, score
+    from benchmarks.scoring import answer_of, score
     from fairlead.tracker import Tracker, TrackerOptions
 
     flight = simulated(seed, sigma_px, told.correlation_time_s)
@@ -89,13 +91,7 @@ def fly(seed: int, sigma_px: float, motion: str, told: argparse.Namespace) -> di
             reading_m = float(np.linalg.norm(T[:3, 3]) + told.range_sigma_m * rng.standard_normal() + wrong_m)
             tracker.add_range(view.stamp_ns, reading_m, told.range_sigma_m)
         found.append(tracker.update(view))
-    answer = Answer(
-        T=np.stack([estimate.T_camera_target for estimate in found]),
-        X=tracker.model.positions,
-        pose_covariances=np.stack([estimate.covariance for estimate in found]),
-        landmark_covariance=tracker.model.covariance,
-    )
-    scores = score(answer, flight.T_true, flight.X_true)
+    scores = score(answer_of(found, tracker.model), flight.T_true, flight.X_true)
     return {
         "squares": list(scores.translation_m**2),
         "nees": list(scores.pose_nees),
@@ -166,7 +162,7 @@ def _complete(job: tuple[int, float, str], options: argparse.Namespace) -> str:
     return f"{path.parent.name} {job[0]}"
 
 
-def _row(sigma_px: float, motion: str, options: argparse.Namespace) -> str:
+def _row(sigma_px: float, motion: str, options: argparse.Namespace) -> list[str]:
     """Of the table: second half of the flight, all runs."""
     import numpy as np
 
@@ -180,12 +176,11 @@ def _row(sigma_px: float, motion: str, options: argparse.Namespace) -> str:
     ratios = [float(np.sqrt(squares[:, part].mean() / floor[part].mean())) for part in parts]
     per_flight = nees.mean(axis=1)
     error = per_flight.std(ddof=1) / np.sqrt(len(per_flight)) if len(per_flight) > 1 else float("nan")
-    cells = [
+    return [
         f"{sigma_px:g}", motion, f"{len(rows)}", f"{np.sqrt(squares[:, parts[0]].mean()):.1f}",
         *(f"{ratio:.2f}" for ratio in ratios),
         f"{per_flight.mean():.2f} ± {error:.2f}", f"{np.sqrt(true_model.mean()):.1f}",
     ]  # fmt: skip
-    return "| " + " | ".join(cells) + " |"
 
 
 def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -211,11 +206,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with multiprocessing.get_context("spawn").Pool(options.processes) as pool:
         for text in pool.imap(partial(_complete, options=options), jobs):
             print(text, file=sys.stderr)
-    lines = ["| " + " | ".join(HEADINGS) + " |", "|---" * len(HEADINGS) + "|"]
-    lines += [_row(px, motion, options) for px in options.sigmas for motion in options.motion]
-    table = "\n".join(lines) + "\n"
-    (options.output / "flight.md").write_text(table, encoding="utf-8")
-    print(table)
+    rows = [_row(px, motion, options) for px in options.sigmas for motion in options.motion]
+    write_table(options.output / "flight.md", HEADINGS, rows)
     return 0
 
 

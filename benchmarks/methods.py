@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.scoring import Answer
+from benchmarks.scoring import Answer, answer_of
 from fairlead.baselines.epnp import EpnpTracker
 from fairlead.baselines.free_window import free_batch
 from fairlead.simulate import Simulation
@@ -24,12 +24,7 @@ def _poses(estimates: Sequence[Estimate]) -> np.ndarray:
 def run_map(views: Sequence[View], target: Target, camera: Camera) -> Answer:
     """The batch with the model prior."""
     found = refine(views, target, camera)
-    return Answer(
-        T=_poses(found.estimates),
-        X=found.model.positions,
-        pose_covariances=np.stack([estimate.covariance for estimate in found.estimates]),
-        landmark_covariance=found.model.covariance,
-    )
+    return answer_of(found.estimates, found.model)
 
 
 def run_epnp(views: Sequence[View], target: Target, camera: Camera) -> Answer:

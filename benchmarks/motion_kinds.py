@@ -16,6 +16,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from benchmarks.table import write_table
+
 SEED = 61
 SCENARIOS = ("flight-30s", "stop", "turn-3g", "rolling-ship-3", "rolling-ship-5")
 DENSITIES_M_S25 = (0.05, 0.5, 5.0)
@@ -26,7 +28,7 @@ def fly(job: tuple[str, int]) -> list[tuple[float, float]]:
     """Of each of PRIORS: mean squared error [m^2], mean NEES / 6; NaN for `world` where nobody tells the attitude."""
     import numpy as np
 
-    from benchmarks.scoring import Answer, score
+    from benchmarks.scoring import answer_of, score
     from fairlead.simulate import load_scenario, simulate
     from fairlead.sources.readings import SensorReadings
     from fairlead.tracker import Tracker, TrackerOptions
@@ -45,13 +47,7 @@ def fly(job: tuple[str, int]) -> list[tuple[float, float]]:
         for view in flight.views:
             readings.tell(tracker, view)
             found.append(tracker.update(view))
-        answer = Answer(
-            T=np.stack([estimate.T_camera_target for estimate in found]),
-            X=tracker.model.positions,
-            pose_covariances=np.stack([estimate.covariance for estimate in found]),
-            landmark_covariance=tracker.model.covariance,
-        )
-        scores = score(answer, flight.T_true, flight.X_true)
+        scores = score(answer_of(found, tracker.model), flight.T_true, flight.X_true)
         rows.append((float(np.mean(scores.translation_m**2)), float(np.mean(scores.pose_nees) / 6.0)))
     return rows
 
@@ -76,17 +72,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         flown = np.array(pool.map(fly, jobs, chunksize=1)).reshape(len(SCENARIOS), options.runs, len(PRIORS), 2)
     rms, nees = np.sqrt(flown[..., 0].mean(axis=1)), flown[..., 1].mean(axis=1)
     heads = ("scenario", *(f"{kind}, q {density:g}" if kind != "none" else "none [m]" for kind, density in PRIORS))
-    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
+    rows = []
     for name, errors, honest in zip(SCENARIOS, rms, nees, strict=True):
         cells = [
             f"{error / errors[0]:.2f} ({value:.1f})".replace("nan (nan)", "")
             for error, value in zip(errors[1:], honest[1:], strict=True)
         ]
-        lines.append("| " + " | ".join([name, f"{errors[0]:.1f} ({honest[0]:.1f})", *cells]) + " |")
-    table = "\n".join(lines) + "\n"
-    options.output.mkdir(parents=True, exist_ok=True)
-    (options.output / "motion_kinds.md").write_text(table, encoding="utf-8")
-    print(table)
+        rows.append([name, f"{errors[0]:.1f} ({honest[0]:.1f})", *cells])
+    write_table(options.output / "motion_kinds.md", heads, rows)
     return 0
 
 

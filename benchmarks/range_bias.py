@@ -14,6 +14,8 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from benchmarks.table import write_table
+
 SEED = 51
 BIAS_SIGMA_M = 3.0
 HEADINGS = ("range finder", "rms [m]", "rms, hover [m]", "NEES / 6", "bias, error rms [m]", "sigma told [m]", "NEES")
@@ -25,7 +27,7 @@ def fly(seed: int, rate_hz: float) -> dict[str, list[float]]:
     """Of each of TOLD: squared errors [m^2] of the flight and of the hover, NEES, error of the bias, its sigma."""
     import numpy as np
 
-    from benchmarks.scoring import Answer, score
+    from benchmarks.scoring import answer_of, score
     from fairlead.simulate import load_scenario, simulate
     from fairlead.sources.readings import SensorReadings
     from fairlead.tracker import Tracker, TrackerOptions
@@ -44,13 +46,7 @@ def fly(seed: int, rate_hz: float) -> dict[str, list[float]]:
         for view in flight.views:
             readings.tell(tracker, view)
             found.append(tracker.update(view))
-        T, covariances = (
-            np.stack(rows) for rows in zip(*((e.T_camera_target, e.covariance) for e in found), strict=True)
-        )
-        answer = Answer(
-            T=T, X=tracker.model.positions, pose_covariances=covariances, landmark_covariance=tracker.model.covariance
-        )
-        scores = score(answer, flight.T_true, flight.X_true)
+        scores = score(answer_of(found, tracker.model), flight.T_true, flight.X_true)
         squares, hover = scores.translation_m**2, round(HOVER_S * rate_hz)
         estimated, sigma = tracker.range_bias
         error = estimated - bias_m
@@ -76,25 +72,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parse(arguments)
     with multiprocessing.get_context("spawn").Pool(options.processes) as pool:
         flights = pool.map(partial(fly, rate_hz=options.rate_hz), range(options.runs), chunksize=1)
-    lines = ["| " + " | ".join(HEADINGS) + " |", "|---" * len(HEADINGS) + "|"]
+    lines = []
     for name, (_, told) in TOLD.items():
         rows = np.array([flight[name] for flight in flights])
         cells = [name, *(f"{root:.2f}" for root in np.sqrt(rows[:, :2].mean(0))), f"{rows[:, 2].mean():.2f}"]
-        bias, sigma = rows[:, 3], rows[:, 4]
-        found = (
-            [
-                f"{np.sqrt(np.mean(bias**2)):.2f}",
-                f"{np.sqrt(np.mean(sigma**2)):.2f}",
-                f"{np.mean((bias / sigma) ** 2):.2f}",
-            ]
-            if told
-            else ["", "", ""]
-        )
-        lines.append("| " + " | ".join([*cells, *found]) + " |")
-    table = "\n".join(lines) + "\n"
-    options.output.mkdir(parents=True, exist_ok=True)
-    (options.output / "range_bias.md").write_text(table, encoding="utf-8")
-    print(table)
+        if told:
+            bias, sigma = rows[:, 3], rows[:, 4]
+            cells += [f"{np.sqrt(np.mean(each**2)):.2f}" for each in (bias, sigma)]
+            cells.append(f"{np.mean((bias / sigma) ** 2):.2f}")
+        lines.append([*cells, *[""] * (len(HEADINGS) - len(cells))])
+    write_table(options.output / "range_bias.md", HEADINGS, lines)
     return 0
 
 

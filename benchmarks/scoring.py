@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of one simulated flight, all views at once, docs/bound.md eq. (15)-(17)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from fairlead.types import Points3, Poses
+from fairlead.types import Estimate, Points3, Poses, Target
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -22,6 +23,16 @@ class Answer:
     """(k, 6, 6) of xi."""
     landmark_covariance: np.ndarray | None = None
     """(3n, 3n) [m^2]."""
+
+
+def answer_of(estimates: Sequence[Estimate], model: Target) -> Answer:
+    """Of an estimator with a model prior: its poses and its model, with their covariances."""
+    return Answer(
+        T=np.stack([estimate.T_camera_target for estimate in estimates]),
+        X=model.positions,
+        pose_covariances=np.stack([estimate.covariance for estimate in estimates]),
+        landmark_covariance=model.covariance,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
