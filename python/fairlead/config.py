@@ -138,7 +138,7 @@ class RenderConfig:
     handle: tuple[float, float, float] | None = None
     """End of a rod from the middle of the bundle, if it has one [m]; for tags."""
     weather: Literal["fog", "rain", "snow", "glare", "dusk", "night", "low-contrast"] | None = None
-    """Between target and camera; crops draw their own."""
+    """Between target and camera; crops draw their own (--weathered)."""
     strength: float = 0.5
     """Of the weather: 0 is clear, 1 as bad as it gets [-]."""
     sun_elevation_deg: float = 35.0
@@ -165,6 +165,8 @@ class RenderConfig:
     """How many crops."""
     empty: float = 0.0
     """Share of the crops without the target, often with another ship in its place [-]."""
+    weathered: float = 0.35
+    """Share of the crops in weather of any kind and strength; at sea [-]."""
     size: int = 256
     """Side of a crop [px]."""
     seed: int = 0
@@ -181,8 +183,9 @@ class RenderConfig:
             raise UsageError("render: expected --strength 0 to 1, --wind-m-s 1 to 30, --sun-elevation-deg -1 to 89")
         counts = (self.samples, self.stride, self.count, self.jobs, self.frames, self.threads)
         least = min(count for count in counts if count is not None)
-        if not (0.0 <= self.crf <= 51.0 and 0.0 <= self.empty <= 1.0):
-            raise UsageError(f"render: expected --crf 0 to 51, got {self.crf}, --empty 0 to 1, got {self.empty}")
+        if not (0.0 <= self.crf <= 51.0 and 0.0 <= self.empty <= 1.0 and 0.0 <= self.weathered <= 1.0):
+            got = f"{self.crf}, {self.empty}, {self.weathered}"
+            raise UsageError(f"render: expected --crf 0 to 51, --empty and --weathered 0 to 1, got {got}")
         if least < 1 or not 32 <= self.size <= 2048 or min(self.seed, self.first) < 0:
             raise UsageError("render: expected whole numbers above 0, --size 32 to 2048, --seed, --first not below 0")
 

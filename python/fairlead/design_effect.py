@@ -29,7 +29,7 @@ def pose_jacobian(camera: Camera, T_camera_target: Matrix4, X_target: Points3) -
 
 
 def design_effect(views: Iterable[tuple[Pixels, PixelCovariances, Jacobian]]) -> float:
-    """d = sum over views of q / 6 over that of s / 2n, at least 1; docs/networks.md eq. (7). A view: e, S, J.
+    """d = sum over views of q / 6 over that of s / 2n, at least 1; docs/networks.md eq. (8). A view: e, S, J.
 
     q = g^T H^-1 g with H = sum J^T S^-1 J and g = sum J^T S^-1 e: by how much a view's errors move its pose, squared
     and whitened; 6 if they are independent. s = sum e^T S^-1 e: 2n if the covariances are right. NaN if no view has

@@ -58,6 +58,7 @@ def render(
     crf: float = 24.0,
     count: int = 1000,
     empty: float = 0.0,
+    weathered: float = 0.35,
     size: int = 256,
     seed: int = 0,
     jobs: int = 1,
@@ -83,7 +84,7 @@ def render(
         from fairlead.render.crops import CropJob, render_crops
 
         crops = CropJob(
-            target=model, camera=lens, folder=output, count=count, empty_share=empty,
+            target=model, camera=lens, folder=output, count=count, empty_share=empty, weather_share=weathered,
             envelope=envelope_of(model, surroundings, up), size=size, seed=seed, surroundings=surroundings,
             quality=quality or "draft", samples=samples, threads=threads,
         )  # fmt: skip

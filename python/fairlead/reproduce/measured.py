@@ -151,7 +151,7 @@ def measure(observed: Observed) -> Measured | None:
 
 
 def shared_error(sequence: Sequence, observed: Observed) -> float:
-    """The design effect of the visible landmarks, at the true poses, networks.md eq. (7); 1 where nothing is known."""
+    """The design effect of the visible landmarks, at the true poses, networks.md eq. (8); 1 where nothing is known."""
     views = (
         (observed.errors[k, seen], observed.covariances[k, seen], pose_jacobian(sequence.camera, T, X[seen]))
         for X in [sequence.true.positions]

@@ -19,7 +19,7 @@ def declared(findings: Findings, threshold: float) -> np.ndarray:
 
 
 def covariances(findings: Findings, calibration: Calibration, landmarks: int) -> np.ndarray:
-    """(m, 2, 2) S = scale S_network + floor^2 I, docs/networks.md eq. (5)."""
+    """(m, 2, 2) S = scale S_network + floor^2 I, docs/networks.md eq. (6)."""
     scale = np.broadcast_to(np.array(calibration.scale), (landmarks,))[findings.landmark]
     return scale[:, None, None] * findings.covariance + calibration.floor_px**2 * np.eye(2)
 
@@ -43,7 +43,7 @@ def visible_threshold(findings: Findings) -> float:
 def fit(findings: Findings, landmarks: int) -> Calibration:
     """Threshold, floor and shape of the tail by likelihood; then scales by which the mean NEES is one.
 
-    Bivariate Student t with covariance S and nu degrees of freedom, s = e^T S^-1 e, docs/networks.md eq. (6):
+    Bivariate Student t with covariance S and nu degrees of freedom, s = e^T S^-1 e, docs/networks.md eq. (7):
     log p = -1/2 log det S + log(nu / (nu - 2)) - (1 + nu / 2) log(1 + s / (nu - 2)) + const.
     """
     threshold = visible_threshold(findings)

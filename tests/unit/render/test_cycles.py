@@ -2,15 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Full quality: what can be judged without Blender, and one tiny frame where there is one."""
 
+import sys
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 
 from fairlead import geometry
 from fairlead.io.coco import read_coco
+from fairlead.render.cycles.blender import load_blender
 from fairlead.render.cycles.materials import environment_pixels
 from fairlead.render.cycles.sea import foam_cover, image_box, make_patch
+from fairlead.render.errors import RenderError
 from fairlead.render.flights import Swell, fly
 from fairlead.render.frame_files import load_linear
 from fairlead.render.job import Job
@@ -69,9 +73,18 @@ def test_no_foam_without_wake_and_breaking() -> None:
     assert (foam_cover(np.ones((4, 4)), np.zeros((4, 4)), 1.0, flat, tile) == 1.0).all()
 
 
+@pytest.mark.parametrize("missing", ["bpy", "OpenEXR"])
+def test_what_is_not_installed_is_said_before_anything_is_traced(missing: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("bpy", "OpenEXR"):
+        monkeypatch.setitem(sys.modules, module, None if module == missing else ModuleType(module))
+    with pytest.raises(RenderError, match=rf"pip install 'fairlead\[render\]'.*{missing}"):
+        load_blender()
+
+
 def test_one_tiny_frame(graphics: None, frigate: Shipped, tmp_path: Path) -> None:
     """Traced twice: the same light; the mask is that of the ray caster where no wave can be."""
-    pytest.importorskip("bpy", reason="bpy is not installed (fairlead[render] on Python 3.11)")
+    for module in ("bpy", "OpenEXR"):
+        pytest.importorskip(module, reason=f"{module} is not installed (fairlead[render] on Python 3.11)")
     from fairlead.render.sequence import render_sequence
 
     placed = fly("rendezvous-30", frigate.target, stride=5)[-1]
@@ -99,7 +112,8 @@ def test_one_tiny_frame(graphics: None, frigate: Shipped, tmp_path: Path) -> Non
 
 
 def test_crops_at_full_quality_have_the_labels_of_drafts(graphics: None, repository: Path, tmp_path: Path) -> None:
-    pytest.importorskip("bpy", reason="bpy is not installed (fairlead[render] on Python 3.11)")
+    for module in ("bpy", "OpenEXR"):
+        pytest.importorskip(module, reason=f"{module} is not installed (fairlead[render] on Python 3.11)")
     from fairlead.render.command import render
 
     for quality in ("draft", "full"):

@@ -9,6 +9,7 @@ from torch import Tensor, nn
 
 from fairlead.train.networks.catalogue import NAMES, make_network
 from fairlead.train.networks.heat import expectation, gaussian_rows
+from fairlead.train.networks.layers import FAINT, even_contrast
 from fairlead.train.networks.pooling import Presence, seen_if_present
 from fairlead.train.networks.rtmpose import SIGMA_BINS, RtmPose, row_expectation
 from fairlead.train.networks.tinypose import SIGMA, Blur, TinyPose, dark
@@ -46,6 +47,25 @@ def test_every_network_answers_for_every_landmark(name: str) -> None:
     parts = (found.pixels, found.cholesky, found.visible, found.present)
     assert all(torch.isfinite(part).all() for part in parts)
     assert (found.visible < found.present[:, None]).all()
+
+
+@pytest.mark.parametrize("name", ["heat-t", "rtmpose-t", "tinypose"])
+def test_no_network_minds_haze_or_exposure(name: str) -> None:
+    """Of a scene seen through haze a quarter of the contrast is left, about a grey that is not the scene's."""
+    network, scene = make_network(name, 5, 64).eval(), torch.randn(2, 3, 64, 64)
+    with torch.inference_mode():
+        clear, hazy = network(scene), network(0.25 * scene + 1.5)
+    assert all(torch.allclose(a, b, rtol=0.03, atol=1e-4) for a, b in zip(clear.maps, hazy.maps, strict=True))
+
+
+def test_contrast_is_evened_picture_by_picture_and_not_made_of_nothing() -> None:
+    scene = torch.randn(2, 3, 32, 32) * torch.tensor([2.0, 0.5])[:, None, None, None] + 1.0
+    evened = even_contrast(scene)
+    assert evened.mean((1, 2, 3)).abs().max() < 1e-5
+    assert torch.allclose(evened.std((1, 2, 3)), torch.ones(2), atol=1e-3)
+    faint = even_contrast(0.1 * FAINT * torch.randn(1, 3, 32, 32) + 0.3)
+    assert faint.std().item() == pytest.approx(0.1, rel=0.05)
+    assert even_contrast(torch.full((1, 3, 32, 32), 0.7)).abs().max() < 1e-3
 
 
 def test_a_landmark_is_seen_if_the_target_is_there_and_it_is_not_hidden() -> None:

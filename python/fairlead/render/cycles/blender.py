@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: fairlead contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The one place that imports bpy, and what every scene of it needs."""
+"""The one place that imports bpy, and OpenEXR for what it writes, and what every scene of it needs."""
 
 import importlib
 import os
@@ -15,13 +15,14 @@ from fairlead.render.errors import RenderError
 from fairlead.types import Camera, Matrix4
 
 
-def load_bpy() -> Any:
-    """Blender as a module. Raises RenderError where it is not installed."""
+def load_blender() -> tuple[Any, Any]:
+    """Blender as a module, and the reader of its images. Raises RenderError where one of them is not installed."""
     try:
-        return importlib.import_module("bpy")
+        return importlib.import_module("bpy"), importlib.import_module("OpenEXR")
     except ImportError as error:
         raise RenderError(
-            f"full quality needs bpy (Python 3.11: pip install 'fairlead[render]'), or take --quality draft: {error}"
+            "full quality needs bpy and OpenEXR (Python 3.11: pip install 'fairlead[render]'), "
+            f"or take --quality draft: {error}"
         ) from error
 
 

@@ -12,7 +12,7 @@ from fairlead.render.cycles.blender import (
     add_camera,
     camera_matrix,
     empty_scene,
-    load_bpy,
+    load_blender,
     mesh_of,
     place,
     set_camera,
@@ -50,7 +50,8 @@ class Tracer:
         samples: int,
         threads: int | None = None,
     ) -> None:
-        self._bpy = bpy = load_bpy()
+        self._bpy, self._openexr = load_blender()
+        bpy = self._bpy
         self._renderer, self._model, self._surroundings = renderer, model, surroundings
         self._hull, self._top = waterline(surface), float(surface.corners[1][2])
         self._foam = foam_tile()
@@ -110,7 +111,7 @@ class Tracer:
             render.filepath = str(path)
             with silenced():
                 self._bpy.ops.render.render(write_still=True)
-            channels = _read_exr(path)
+            channels = _read_exr(self._openexr, path)
         colour, index = channels["Combined"], channels["IndexOB"]
         if colour.shape[:2] != (y1 - y0, x1 - x0):
             raise RenderError(f"Cycles gave {colour.shape[1]} x {colour.shape[0]} px for {x1 - x0} x {y1 - y0}")
@@ -165,11 +166,8 @@ def _target_object(bpy: Any, scene: Any, surface: Surface, weathering: float) ->
     return made
 
 
-def _read_exr(path: Path) -> dict[str, np.ndarray]:
+def _read_exr(openexr: Any, path: Path) -> dict[str, np.ndarray]:
     """Passes of a multilayer EXR by their last names."""
-    import importlib
-
-    openexr: Any = importlib.import_module("OpenEXR")
     found: dict[str, np.ndarray] = {}
     with openexr.File(str(path)) as stream:
         for name, channel in stream.channels().items():

@@ -12,7 +12,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from fairlead.train.networks.cspnext import CspNext
-from fairlead.train.networks.layers import ConvBnSiLU, Separable
+from fairlead.train.networks.layers import ConvBnSiLU, Separable, even_contrast
 from fairlead.train.networks.pooling import LandmarkHead, Presence, seen_if_present
 from fairlead.train.networks.prediction import Prediction
 
@@ -40,7 +40,7 @@ class Heat(nn.Module):
 
     def forward(self, images: Tensor) -> Prediction:
         """(b, 3, h, w), normalised."""
-        maps = self.backbone(images)
+        maps = self.backbone(even_contrast(images))
         x = self.smooth[3](self.lateral[3](maps[3]))
         for level in (2, 1, 0):
             x = self.smooth[level](self.lateral[level](maps[level]) + F.interpolate(x, scale_factor=2.0))

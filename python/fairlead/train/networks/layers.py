@@ -7,6 +7,16 @@ from torch import Tensor, nn
 
 from fairlead.train.networks.depthwise import DepthwiseConv2d
 
+FAINT = 1.0 / 58.0
+"""Contrast that is as good as none, one grey level: what is fainter stays faint."""
+
+
+def even_contrast(images: Tensor) -> Tensor:
+    """(b, 3, h, w) to mean 0 and variance 1 of each whole picture: no haze any more. docs/networks.md eq. (1)."""
+    centred = images - images.mean((1, 2, 3), keepdim=True)
+    variance = centred.square().mean((1, 2, 3), keepdim=True)
+    return centred / torch.sqrt(variance + FAINT**2)
+
 
 class ConvBnSiLU(nn.Sequential):
     """Convolution without bias, batch norm, SiLU; the size stays, up to the stride."""

@@ -11,6 +11,7 @@ from torch import Tensor, nn
 
 from fairlead.train.networks.attention import GatedAttention, ScaleNorm
 from fairlead.train.networks.cspnext import CspNext
+from fairlead.train.networks.layers import even_contrast
 from fairlead.train.networks.pooling import LandmarkHead, Presence, seen_if_present
 from fairlead.train.networks.prediction import Prediction
 
@@ -43,7 +44,7 @@ class RtmPose(nn.Module):
 
     def forward(self, images: Tensor) -> Prediction:
         """(b, 3, h, w), normalised."""
-        features = self.backbone(images)[-1]
+        features = self.backbone(even_contrast(images))[-1]
         tokens = self.attention(self.lift(self.tokens(features).flatten(2)))
         rows = (self.across(tokens).float(), self.down(tokens).float())
         found = [row_expectation(row) for row in rows]

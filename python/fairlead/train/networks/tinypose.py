@@ -10,6 +10,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from fairlead.train.networks.heat import STRIDE, expectation, gaussian_rows
+from fairlead.train.networks.layers import even_contrast
 from fairlead.train.networks.lite_hrnet import WIDTHS, LiteHrNet
 from fairlead.train.networks.pooling import LandmarkHead, Presence, seen_if_present
 from fairlead.train.networks.prediction import Prediction
@@ -35,7 +36,7 @@ class TinyPose(nn.Module):
 
     def forward(self, images: Tensor) -> Prediction:
         """(b, 3, h, w), normalised."""
-        features, coarse = self.backbone(images)
+        features, coarse = self.backbone(even_contrast(images))
         features = features.float()
         heat = self.heat(features).float()
         _, known = expectation(heat, features)
