@@ -107,12 +107,13 @@ nb::tuple solve_window(const Camera& camera, const Rows3& X, const Rows44& T, co
     window::Problem problem = make_problem(camera, X, T, view_index, landmarks, pixels, covariances, loss_threshold);
     if (!prior_information.is_none()) {
         const std::vector<Vec3> mean = to_points(nb::cast<Rows3>(prior_mean));
-        problem.prior =
-            window::LandmarkPrior{Eigen::Map<const VecX>(mean.front().data(), 3 * problem.landmarks()),
-                                  to_matrix(nb::cast<Square>(prior_information)), VecX::Zero(3 * problem.landmarks())};
-        if (problem.prior->information.rows() != 3 * problem.landmarks() || mean.size() != problem.X.size())
+        const MatX information = to_matrix(nb::cast<Square>(prior_information));
+        const Eigen::Index rows = 3 * static_cast<Eigen::Index>(problem.X.size());
+        if (information.rows() != rows || mean.size() != problem.X.size())
             throw std::invalid_argument(
                 "prior: expected the mean (n, 3) and the information (3n, 3n) of all landmarks");
+        problem.prior =
+            window::LandmarkPrior{Eigen::Map<const VecX>(mean.front().data(), rows), information, VecX::Zero(rows)};
     }
     window::LmSummary summary;
     {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: fairlead contributors
 // SPDX-License-Identifier: Apache-2.0
 // The window solve of the core, asked through stdin: serve.hpp.
+#include <cmath>
 #include <limits>
 
 #include "fairlead/window/levenberg_marquardt.hpp"
@@ -19,8 +20,7 @@ class Core {
         start_.X = file.X0;
         start_.loss.threshold = std::numeric_limits<double>::infinity();
         const Eigen::Index rows = 3 * static_cast<Eigen::Index>(n);
-        start_.prior = window::LandmarkPrior{Eigen::Map<const VecX>(file.X0.front().data(), rows),
-                                             MatX::Identity(rows, rows) / (file.prior_sigma_m * file.prior_sigma_m)};
+        start_.prior = window::make_prior(file.X0, std::pow(file.prior_sigma_m, 2) * MatX::Identity(rows, rows));
         const Mat22 information = Mat22::Identity() / (file.sigma_px * file.sigma_px);
         for (std::size_t k = 0; k < file.R.size(); ++k) {
             window::ViewBlock view(n);

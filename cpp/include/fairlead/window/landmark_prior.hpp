@@ -14,7 +14,7 @@ namespace fairlead::window {
 [[nodiscard]] MatX landmark_covariance(std::span<const Vec3> X0, std::span<const Vec3> sigma, double scale_sigma);
 
 /// X ~ N(mean, alpha P0), held as mean and information P0^-1; its last entries may be no landmarks, but N(0, P0)
-/// whatever alpha is.
+/// whatever alpha is. Made by `make_prior`: all three have 3N entries.
 struct LandmarkPrior {
     VecX mean;         ///< 3N [m], landmark-major
     MatX information;  ///< 3N x 3N [1/m^2]
@@ -29,10 +29,10 @@ struct LandmarkPrior {
 [[nodiscard]] LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance, int aside = 0);
 
 /// Squared Mahalanobis distance (X - X0)^T P0^-1 (X - X0) [-]. Allocates nothing.
+[[nodiscard]] double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept;
+
 /// The same of what is set aside, sum x^2 / P0.
 [[nodiscard]] double aside_cost(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept;
-
-[[nodiscard]] double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept;
 
 /// Standard deviation of what is held fixed, in units of the model's extent.
 inline constexpr double kFixedSigma = 1e-6;
