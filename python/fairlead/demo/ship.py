@@ -29,6 +29,7 @@ from fairlead.io.timing import read_timing
 from fairlead.progress import ProgressFactory, silent
 from fairlead.tracker import Tracker, TrackerOptions
 from fairlead.types import PoseEstimator, Target
+from fairlead.video.clip import CLIP
 
 DRAWS = 12
 
@@ -66,7 +67,7 @@ def demo_ship(config: DemoConfig, progress: ProgressFactory = silent) -> ShipRes
     overlay = config.output / "overlay.mkv"
     config.output.mkdir(parents=True, exist_ok=True)
     pixels = TrackConfig(
-        source=clip / "clip.mkv",
+        source=clip / CLIP,
         target=told,
         camera=clip / "camera.yaml",
         detector="frigate",

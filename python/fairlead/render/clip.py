@@ -15,9 +15,7 @@ from fairlead.render.frame_files import picture_path
 from fairlead.render.job import Job
 from fairlead.render.raycast import RayCaster
 from fairlead.render.truth_tables import write_truth_tables
-from fairlead.video.clip import TICK_NS, ClipWriter
-
-CLIP = "clip.mkv"
+from fairlead.video.clip import CLIP, TICK_NS, ClipWriter
 
 
 def write_clip(job: Job, folder: Path, *, crf: float, progress: ProgressFactory = silent) -> None:

@@ -18,10 +18,10 @@ from fairlead.io.errors import InputError
 from fairlead.io.poses import read_truth
 from fairlead.io.target import load_target
 from fairlead.types import Camera, Pixels, Target, TruthPose
+from fairlead.video.clip import CLIP
 
 ORDER = ("orbit-2.0", "rendezvous-10", "rendezvous-20", "rendezvous-30")
 """The published ones, in the order of the published tables; others follow by name."""
-CLIP = "clip.mkv"
 _LANDMARK_COLUMNS = ("frame", "stamp_ns", "landmark", "u_px", "v_px", "depth_m", "state")
 
 

@@ -20,8 +20,8 @@ from fairlead.opencv.crops import cut_resized
 from fairlead.train.crops import read_folders
 from fairlead.types import Camera, Matrix4
 from fairlead.video import open_video, pictures
+from fairlead.video.clip import CLIP
 
-CLIP = "clip.mkv"
 PAD = 1.25
 """Side of a window over that of the landmarks' box."""
 MISPLACED, MISSIZED = 0.04, 0.08

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import UInt8
 
+CLIP = "clip.mkv"
+"""The film of a sequence, in the folder of its truth."""
 TICK_NS = 1_000_000
 """Matroska counts milliseconds."""
 _X264 = {"preset": "slow", "psy": "0", "aq-mode": "0", "threads": "1"}
