@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The Bayesian bound of a sequence with the measured covariance of a network, docs/reproduce.md section 5."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from fairlead.pnp import MIN_POINTS
 from fairlead.reproduce.methods import Flight, recorded
 from fairlead.study.recorded import solve_recorded
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Bound:
-    """Least root mean squares of one flight."""
+    """Least root mean squares of one flight; NaN in frames of too few landmarks for a pose."""
 
     pose_covariances: np.ndarray
     """(k, 6, 6) of xi."""
@@ -31,8 +32,8 @@ class Bound:
 
     @property
     def model_rms_m(self) -> float:
-        """Over landmarks; NaN where a view without a pose has no bound."""
-        return float(np.sqrt(3.0 * np.diag(self.X_covariance).mean())) if self.X_covariance.size else float("nan")
+        """Over landmarks."""
+        return float(np.sqrt(3.0 * np.diag(self.X_covariance).mean()))
 
 
 def bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0, design_effect: float = 1.0) -> Bound:
@@ -52,25 +53,27 @@ def bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0, design
 
 def causal_bound(flight: Flight, factor: float = 1.0, inefficiency: float = 1.0, design_effect: float = 1.0) -> Bound:
     """Of each frame with the views up to it: what an online estimator can know."""
-    each = [bound(_first(flight, k), factor, inefficiency, design_effect) for k in range(1, len(flight.views) + 1)]
+    each = [bound(_of(flight, np.arange(k + 1)), factor, inefficiency, design_effect) for k in range(len(flight.views))]
     return Bound(
         pose_covariances=np.array([one.pose_covariances[-1] for one in each]), X_covariance=each[-1].X_covariance
     )
 
 
 def _solve(flight: Flight, P0: np.ndarray, factor: float) -> tuple[np.ndarray, np.ndarray]:
-    answer = solve_recorded("bound", recorded(flight, P0, factor * flight.observed.covariances))
-    return answer.pose_covariances, answer.X_covariance
+    """A view of too few landmarks for a pose has no bound, NaN, and says nothing of the model."""
+    placed = np.count_nonzero(np.isfinite(flight.observed.pixels).all(axis=2), axis=1) >= MIN_POINTS
+    poses = np.full((len(placed), 6, 6), np.nan)
+    if not placed.any():
+        return poses, P0
+    used = _of(flight, np.flatnonzero(placed))
+    answer = solve_recorded("bound", recorded(used, P0, factor * used.observed.covariances))
+    poses[placed] = answer.pose_covariances
+    return poses, answer.X_covariance
 
 
-def _first(flight: Flight, k: int) -> Flight:
+def _of(flight: Flight, frames: np.ndarray) -> Flight:
+    """The same flight with some of its frames."""
     seen = flight.observed
-    cut = replace(
-        seen,
-        stamps_ns=seen.stamps_ns[:k],
-        pixels=seen.pixels[:k],
-        covariances=seen.covariances[:k],
-        errors=seen.errors[:k],
-        visible=seen.visible[:k],
-    )
-    return replace(flight, views=flight.views[:k], observed=cut, T_true=flight.T_true[:k])
+    cut = {each.name: getattr(seen, each.name)[frames] for each in fields(seen)}
+    views = tuple(flight.views[k] for k in frames)
+    return replace(flight, views=views, observed=replace(seen, **cut), T_true=flight.T_true[frames])

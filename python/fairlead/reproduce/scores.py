@@ -57,8 +57,8 @@ def score(track: Track, flight: Flight) -> dict[str, float]:
         "rotation_deg": _mean(e.rotation_deg),
         "translation_m": _mean(e.translation_m),
         "translation_percent": _mean(100.0 * e.translation_m / e.range_m),
-        "rotation_rms_deg": _rms(e.rotation_deg),
-        "translation_rms_m": _rms(e.translation_m),
+        "rotation_rms_deg": rms(e.rotation_deg),
+        "translation_rms_m": rms(e.translation_m),
         "rotation_all_deg": float(np.where(e.failed, FAILURE_ROTATION_DEG, e.rotation_deg).mean()),
         "translation_all_m": float(np.where(e.failed, limit_m, e.translation_m).mean()),
         "translation_since_m": _since_first(np.where(e.failed, limit_m, e.translation_m), e.rotation_deg),
@@ -67,8 +67,8 @@ def score(track: Track, flight: Flight) -> dict[str, float]:
         "wrong": float((e.failed & np.isfinite(e.rotation_deg)).mean()),
         "pose_nees": _mean(e.nees),
         "pose_nees_median": _median(e.nees),
-        "sigma_translation_m": _rms(e.sigma_translation_m),
-        "sigma_rotation_deg": _rms(e.sigma_rotation_deg),
+        "sigma_translation_m": rms(e.sigma_translation_m),
+        "sigma_rotation_deg": rms(e.sigma_rotation_deg),
         "model_m": float(track.model_m[-1]),
         "model_aligned_m": model_error_m(track.X, flight.X_true, aligned=True),
         "model_before_m": model_error_m(flight.told.positions, flight.X_true),
@@ -142,18 +142,19 @@ def paired(mine: Sequence[float], theirs: Sequence[float]) -> Paired:
 def over_bound(tracks: Sequence[Track], flights: Sequence[Flight], floor: Bound, first: int = 0) -> dict[str, float]:
     """Root mean squares of rotation, translation and model over the bound's, from frame `first` on.
 
-    Over frames with a pose, then over seeds; a method that has none gets NaN.
+    Over frames with a pose and a bound, then over seeds; a method that has none gets NaN.
     """
     errors = [errors_of(track, flight.T_true) for track, flight in zip(tracks, flights, strict=True)]
-    X = [_rms(np.linalg.norm(a.X - b.X_true, axis=1)) for a, b in zip(tracks, flights, strict=True)]
+    bounded = np.isfinite(floor.rotation_rms_deg) & (np.arange(len(floor.rotation_rms_deg)) >= first)
+    X = [rms(np.linalg.norm(a.X - b.X_true, axis=1)) for a, b in zip(tracks, flights, strict=True)]
     found = {
-        "rotation": [_rms(each.rotation_deg[first:]) for each in errors],
-        "translation": [_rms(each.translation_m[first:]) for each in errors],
+        "rotation": [rms(each.rotation_deg[bounded]) for each in errors],
+        "translation": [rms(each.translation_m[bounded]) for each in errors],
         "model": X,
     }
-    least = {"rotation": _rms(floor.rotation_rms_deg[first:]), "translation": _rms(floor.translation_rms_m[first:])}
+    least = {"rotation": rms(floor.rotation_rms_deg[bounded]), "translation": rms(floor.translation_rms_m[bounded])}
     least["model"] = floor.model_rms_m
-    return {name: _rms(np.array(values)) / least[name] for name, values in found.items()}
+    return {name: rms(np.array(values)) / least[name] for name, values in found.items()}
 
 
 def _since_first(values: np.ndarray, rotation_deg: np.ndarray) -> float:
@@ -172,6 +173,7 @@ def _median(values: np.ndarray) -> float:
     return float(np.median(known)) if known.size else float("nan")
 
 
-def _rms(values: np.ndarray) -> float:
+def rms(values: np.ndarray) -> float:
+    """Root mean square of what is known; NaN where nothing is."""
     known = values[np.isfinite(values)]
     return float(np.sqrt((known**2).mean())) if known.size else float("nan")

@@ -117,3 +117,17 @@ def test_the_causal_bound_falls_to_the_whole(flight):
     assert causal.translation_rms_m[-1] == pytest.approx(whole.translation_rms_m[-1])
     assert (causal.translation_rms_m >= whole.translation_rms_m - 1e-9).all()
     assert causal.model_rms_m == pytest.approx(whole.model_rms_m)
+
+
+def test_a_frame_of_too_few_landmarks_has_no_bound_and_costs_the_others_nothing(flight):
+    pixels = flight.observed.pixels.copy()
+    pixels[[0, 3], 3:] = np.nan
+    poor = replace(flight, observed=replace(flight.observed, pixels=pixels))
+    found, causal = bound(poor), causal_bound(poor)
+    rest = np.delete(np.arange(len(pixels)), [0, 3])
+    for each in (found, causal):
+        assert np.flatnonzero(np.isnan(each.translation_rms_m)).tolist() == [0, 3]
+        assert np.isfinite(each.model_rms_m)
+    whole = bound(flight)
+    assert (found.translation_rms_m[rest] >= whole.translation_rms_m[rest]).all()
+    np.testing.assert_allclose(found.translation_rms_m[rest], whole.translation_rms_m[rest], rtol=0.3)

@@ -12,7 +12,7 @@ from fairlead.reproduce.detections import Network
 from fairlead.reproduce.experiments.shared import NO_SEQUENCES, run_facts, undetected
 from fairlead.reproduce.experiments.targets import target_tables
 from fairlead.reproduce.methods import BOUND, EPNP, LABELS, OURS, TRUE, WINDOW
-from fairlead.reproduce.scores import score, summarise
+from fairlead.reproduce.scores import rms, score, summarise
 from fairlead.reproduce.sequences import Sequence
 
 _COLUMNS = (
@@ -114,7 +114,7 @@ def _rows(sequence: Sequence, network: Network, seeds: Seeds, bounds: Bounds | N
         head: dict[str, Cell] = {"sequence": sequence.name, "network": network.label, "method": method}
         rows.append(head | {"label": LABELS[method]} | summarise(scores))
     if bounds is not None:
-        rotation, translation = (_rms(each) for each in (bounds.white.rotation_rms_deg, bounds.white.translation_rms_m))
+        rotation, translation = (rms(each) for each in (bounds.white.rotation_rms_deg, bounds.white.translation_rms_m))
         rows.append(
             {
                 "sequence": sequence.name,
@@ -128,7 +128,3 @@ def _rows(sequence: Sequence, network: Network, seeds: Seeds, bounds: Bounds | N
             }
         )
     return rows
-
-
-def _rms(values: np.ndarray) -> float:
-    return float(np.sqrt((values**2).mean()))
