@@ -112,8 +112,7 @@ nb::tuple solve_window(const Camera& camera, const Rows3& X, const Rows44& T, co
         if (information.rows() != rows || mean.size() != problem.X.size())
             throw std::invalid_argument(
                 "prior: expected the mean (n, 3) and the information (3n, 3n) of all landmarks");
-        problem.prior =
-            window::LandmarkPrior{Eigen::Map<const VecX>(mean.front().data(), rows), information, VecX::Zero(rows)};
+        problem.prior.emplace(Eigen::Map<const VecX>(mean.front().data(), rows), information, VecX::Zero(rows));
     }
     window::LmSummary summary;
     {

@@ -90,6 +90,10 @@ class _Residuals:
         self.A = np.zeros((0, 3 * self.n))
         if problem.P0 is not None:
             self.A = _whitener(problem.prior_factor * problem.P0)
+            inverse = np.linalg.inv(problem.P0)
+            weights = np.trace(inverse.reshape(self.n, 3, self.n, 3).diagonal(axis1=0, axis2=2), axis1=0, axis2=1)
+            self.x0 = (problem.X0 - weights @ problem.X0 / weights.sum()).ravel()
+            self.by_scale = inverse @ self.x0 / (self.x0 @ inverse @ self.x0)
         reach = problem.X0[problem.landmark] - centre_and_rotation(T)[0][problem.view]
         self.metres = 1e-5 * float(np.linalg.norm(reach, axis=1).mean())
 
@@ -103,8 +107,27 @@ class _Residuals:
         points = np.einsum("mij,mj->mi", R[p.view], X[p.landmark] - c[p.view])
         return _robust(np.einsum("mij,mj->mi", self.W, p.project(points) - p.pixels), a)
 
+    def _scale(self, x: np.ndarray) -> tuple[float, np.ndarray]:
+        """s and e of X = X0 + (s - 1) x0 + e, docs/estimator.md eq. (2)."""
+        u = x[: 3 * self.n] - self.problem.X0.ravel()
+        s = 1.0 + self.by_scale @ u
+        return s, u - (s - 1.0) * self.x0
+
     def prior(self, x: np.ndarray) -> np.ndarray:
-        return self.A @ (x[: 3 * self.n] - self.problem.X0.ravel())
+        """Whitened d = (s - 1) x0 + e / s."""
+        if not len(self.A):
+            return np.zeros(0)
+        s, e = self._scale(x)
+        return self.A @ ((s - 1.0) * self.x0 + e / s)
+
+    def prior_jacobian(self, x: np.ndarray) -> np.ndarray:
+        """d prior / d X, (3n, 3n)."""
+        if not len(self.A):
+            return self.A
+        s, e = self._scale(x)
+        w = self.by_scale
+        shape = (np.eye(3 * self.n) - np.outer(self.x0, w)) / s - np.outer(e, w) / s**2
+        return self.A @ (np.outer(self.x0, w) + shape)
 
     def jacobian(self, x: np.ndarray, a: float) -> np.ndarray:
         """d images / d x, (2m, 3n + 6k), by central differences.
@@ -134,7 +157,7 @@ def solve(problem: Problem, X: np.ndarray, T_camera_target: np.ndarray, iteratio
     found = least_squares(
         lambda x: np.r_[system.images(x, a).ravel(), system.prior(x)],
         np.r_[X.ravel(), np.zeros(6 * system.k)],
-        lambda x: np.vstack([system.jacobian(x, a), np.hstack([system.A, pad])]),
+        lambda x: np.vstack([system.jacobian(x, a), np.hstack([system.prior_jacobian(x), pad])]),
         method="trf", x_scale="jac", ftol=1e-10, xtol=1e-10, gtol=1e-10, max_nfev=iterations,
     )  # fmt: skip
     X, T = system.unpack(found.x)
@@ -152,9 +175,10 @@ def _normal_equations(problem: Problem, X: np.ndarray, T: np.ndarray) -> tuple[n
     w = robust_weight(s, a)
     J = system.jacobian(x, np.inf)
     H = J.T @ (np.repeat(w, 2)[:, None] * J)
-    H[: X.size, : X.size] += system.A.T @ system.A
+    P = system.prior_jacobian(x)
+    H[: X.size, : X.size] += P.T @ P
     gradient = J.T @ (w[:, None] * u).ravel()
-    gradient[: X.size] += system.A.T @ d
+    gradient[: X.size] += P.T @ d
     cost = float(0.5 * (robust_loss(s, a).sum() + d @ d))
     return H, gradient, cost
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: fairlead contributors
 // SPDX-License-Identifier: Apache-2.0
-// All views at once from images: starts, graduated loss, factors, second looks.
+// All views at once from images: graduated loss and factors.
 #include "batch.hpp"
 
 #include <algorithm>
@@ -47,7 +47,10 @@ Refinement Batch::solve() {
         share_information();
         graduate(1.0);
     }
-    if (last_.ok && options_.motion != motion::Kind::none) start_path();
+    if (last_.ok && options_.motion != motion::Kind::none)
+        start_path();
+    else if (last_.ok)
+        locate_by_whole_views();
     return result();
 }
 
@@ -65,31 +68,6 @@ void Batch::update_blocks() {
         const Eigen::Index row = 3 * static_cast<Eigen::Index>(j);
         blocks_[j] = Sigma_.block<3, 3>(row, row);
     }
-}
-
-/// Finds a first pose for every view that has none; true if any view was added.
-bool Batch::start_missing_views() {
-    bool added = false;
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-        Candidate& candidate = candidates_[k];
-        if (candidate.view >= 0) continue;
-        TrackerOptions options = options_;
-        options.seed += k;
-        const StartPose start = find_start(problem_.camera, model(), candidate.observations, std::nullopt,
-                                           problem_.noise_factor, options, scratch_);
-        candidate.reason = start.reason;
-        if (start.reason != Reason::none) continue;
-        window::ViewBlock view(problem_.landmarks());
-        view.stamp_ns = candidate.stamp_ns;
-        view.state.T_camera_target = start.poses.best.T_camera_target;
-        view.ranges = candidate.ranges;
-        for (const Observation& o : candidate.observations)
-            view.measurements.push_back({o.landmark, o.z, o.covariance.inverse()});
-        candidate.view = static_cast<int>(problem_.views.size());
-        problem_.views.push_back(std::move(view));
-        added = true;
-    }
-    return added;
 }
 
 /// Of detections that err alike, docs/motion.md eq. (12).
@@ -151,33 +129,6 @@ void Batch::graduate(double mu) {
                                        std::abs(problem_.prior_factors.believed / prior - 1.0));
         if (change < kFactorChange) return;
     }
-}
-
-/// Tries every view from its mirror image and from a fresh consensus on the present model; true if one of them costs
-/// less.
-bool Batch::take_second_look() {
-    bool moved = false;
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-        const Candidate& candidate = candidates_[k];
-        if (candidate.view < 0) continue;
-        window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate.view)];
-        SE3& T = view.state.T_camera_target;
-        TrackerOptions options = options_;
-        options.seed += k + 7919;
-        const StartPose fresh = find_start(problem_.camera, model(), candidate.observations, std::nullopt,
-                                           problem_.noise_factor, options, scratch_);
-        const SE3 starts[] = {pnp::mirrored(T, problem_.X, candidate.observations), fresh.poses.best.T_camera_target,
-                              fresh.poses.other.T_camera_target};
-        for (const SE3& start : starts) {
-            const pnp::RefineResult other =
-                pnp::refine(start, problem_.X, candidate.observations, problem_.camera, problem_.told_loss());
-            if (!other.ok || !(cost(view, other.T_camera_target) < cost(view, T) - 1e-3 * problem_.noise_factor))
-                continue;
-            T = other.T_camera_target;
-            moved = true;
-        }
-    }
-    return moved;
 }
 
 }  // namespace fairlead

@@ -25,6 +25,9 @@ struct Candidate {
     int view = -1;
     int on_path = -1;  ///< its place on the path, where there is one
     Reason reason = Reason::none;
+    std::optional<SE3> twin;     ///< another pose that explains the view nearly as well
+    double twin_nats = 0.0;      ///< by how much less well
+    std::optional<Mat66> whole;  ///< covariance of a pose that the whole view was asked for
 };
 
 /// All views of a flight and their joint solution, docs/estimator.md section 5.
@@ -44,8 +47,11 @@ class Batch {
     void add_attitudes(std::span<const BatchReadings::Attitude> attitudes);
     [[nodiscard]] std::vector<Candidate*> in_time();
 
+    [[nodiscard]] std::optional<SE3> neighbour(const Candidate& candidate) const;
     bool start_missing_views();
     bool take_second_look();
+    void locate_by_whole_views();
+    void locate(Candidate& candidate, window::ViewBlock& view, const std::vector<Vec3>& X_data);
     double widest_loss();
     bool solve_widened(double mu, int max_iterations);
     void graduate(double mu);

@@ -20,6 +20,7 @@ const window::ViewBlock& Batch::block(const Candidate& candidate) const {
 /// Of a pose, with what is not known of the model and of the range finder.
 Mat66 Batch::covariance(const Candidate& candidate) const {
     if (candidate.on_path >= 0) return path_covariances_[static_cast<std::size_t>(candidate.on_path)];
+    if (candidate.whole) return *candidate.whole;
     MatX Yt(Sigma_.rows(), window::ViewState::kDim);
     MatX SigmaYt = Yt;
     return window::state_covariance(block(candidate), problem_.X, Sigma_, problem_.pose_factor, Yt, SigmaYt);
@@ -38,6 +39,11 @@ Estimate Batch::estimate(const Candidate& candidate, std::vector<int>& inliers) 
         doubt(problem_.noise_factor, problem_.prior_factors.likely, window::contradicts_prior(problem_, determined_));
     e.T_camera_target = view.state.T_camera_target;
     e.covariance = covariance(candidate);
+    if (candidate.twin && candidate.on_path < 0) {
+        const Vec6 way = difference(e.T_camera_target, *candidate.twin);
+        e.covariance += way * way.transpose() / (1.0 + std::exp(candidate.twin_nats));
+        if (e.reason == Reason::none) e.reason = Reason::ambiguous;
+    }
     double squares = 0.0;
     for (const window::Measurement& m : view.measurements) {
         Vec2 z;

@@ -205,13 +205,16 @@ void Structure::locate_newest(Fusion& fusion) noexcept {
 /// docs/motion.md eq. (13). The model has learned of those errors already and is put back.
 bool Structure::locate_by_whole_view(Fusion& fusion) noexcept {
     double& share = problem_.views.back().share;
+    double& believed = problem_.prior_factors.believed;
     const double told = std::exchange(share, 1.0);
+    const double cautious = std::exchange(believed, problem_.prior_factors.likely);
     const bool joined = join_newest();
     if (joined) {
         publish();
         locate_newest(fusion);
     }
     share = told;
+    believed = cautious;
     std::copy(workspace_.X_before.begin(), workspace_.X_before.end(), problem_.X.begin());
     return joined;
 }

@@ -34,6 +34,8 @@ double structure_covariance(const Problem& problem, Workspace& workspace, MatX& 
         workspace.S = Sigma;  // is in its factor already
         Sigma.noalias() += excess * workspace.S * workspace.product;
     }
+    for (Eigen::Index c = 0; c < Sigma.cols(); ++c)
+        for (Eigen::Index r = 0; r < c; ++r) Sigma(r, c) = Sigma(c, r) = 0.5 * (Sigma(r, c) + Sigma(c, r));
     return determined;
 }
 

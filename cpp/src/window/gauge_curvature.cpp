@@ -64,6 +64,7 @@ void add_gauge_curvature(std::span<const Vec3> X, MatX& Sigma) {
         for (Eigen::Index q = 0; q < 16; ++q) W(p, q) = 0.5 * S(p / 4, q / 4) * S(p % 4, q % 4);
     const VecX bias = 0.5 * H * S.reshaped();
     Sigma += H * W * H.transpose() + bias * bias.transpose();
+    Sigma = (0.5 * (Sigma + Sigma.transpose())).eval();
 }
 
 }  // namespace fairlead::window

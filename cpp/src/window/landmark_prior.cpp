@@ -4,9 +4,12 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace fairlead::window {
 namespace {
@@ -24,7 +27,33 @@ double extent(std::span<const Vec3> X) {
     return radius;
 }
 
+constexpr double kLeastScale = 0.05;  // of the told size
+
 }  // namespace
+
+LandmarkPrior::LandmarkPrior(VecX mean_m, MatX P0_inverse, VecX aside_information)
+    : mean(std::move(mean_m)),
+      information(std::move(P0_inverse)),
+      aside(std::move(aside_information)),
+      outline(VecX::Zero(mean.size())) {
+    Vec3 middle = Vec3::Zero();
+    double total = 0.0;
+    for (Eigen::Index r = 0; r < mean.size(); r += 3) {
+        const double weight = information.block<3, 3>(r, r).trace();
+        middle += weight * mean.segment<3>(r);
+        total += weight;
+    }
+    middle /= total;
+    for (Eigen::Index r = 0; r < mean.size(); r += 3)
+        if (information(r, r) > 0.0) outline.segment<3>(r) = mean.segment<3>(r) - middle;
+    pull = information * outline;
+    scale_information = std::max(outline.dot(pull), std::numeric_limits<double>::min());
+}
+
+double LandmarkPrior::scale(std::span<const Vec3> X) const noexcept {
+    const Eigen::Map<const VecX> x(X.front().data(), mean.size());
+    return std::max(1.0 + pull.dot(x - mean) / scale_information, kLeastScale);
+}
 
 MatX landmark_covariance(std::span<const Vec3> X0, std::span<const Vec3> sigma, double scale_sigma) {
     if (sigma.size() != X0.size())
@@ -51,18 +80,16 @@ LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance, int a
         throw std::invalid_argument("prior covariance: got " + std::to_string(covariance.rows()) + " x " +
                                     std::to_string(covariance.cols()) + ", expected " + std::to_string(n) + " x " +
                                     std::to_string(n));
-    LandmarkPrior prior;
-    prior.mean.resize(n);
-    for (Eigen::Index j = 0; j < n / 3; ++j) prior.mean.segment<3>(3 * j) = X0[static_cast<std::size_t>(j)];
-    if (!prior.mean.allFinite() || !covariance.allFinite())
+    const VecX mean = Eigen::Map<const VecX>(X0.front().data(), n);
+    if (!mean.allFinite() || !covariance.allFinite())
         throw std::invalid_argument("landmark prior: got NaN or infinite values, expected finite ones");
     const double largest = covariance.cwiseAbs().maxCoeff();
     if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > 1e-9 * largest)
         throw std::invalid_argument("prior covariance: got an asymmetric matrix, expected a symmetric one");
 
     const Eigen::Index m = n - 3 * aside;
-    prior.aside = VecX::Zero(n);
-    prior.aside.tail(n - m) = covariance.diagonal().tail(n - m).cwiseInverse();
+    VecX set_aside = VecX::Zero(n);
+    set_aside.tail(n - m) = covariance.diagonal().tail(n - m).cwiseInverse();
     const double floor = std::pow(kFixedSigma * std::max(extent(X0.first(static_cast<std::size_t>(m / 3))), 1e-9), 2);
     const MatX P0 = covariance.topLeftCorner(m, m);
     const Eigen::SelfAdjointEigenSolver<MatX> eigen(0.5 * (P0 + P0.transpose()));
@@ -70,9 +97,9 @@ LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance, int a
         throw std::invalid_argument("prior covariance: got a negative eigenvalue, expected positive semidefinite");
     const VecX information = (eigen.eigenvalues().array().max(0.0) + floor).inverse().matrix();
     const MatX inverse = eigen.eigenvectors() * information.asDiagonal() * eigen.eigenvectors().transpose();
-    prior.information = MatX::Zero(n, n);
-    prior.information.topLeftCorner(m, m) = 0.5 * (inverse + inverse.transpose());
-    return prior;
+    MatX padded = MatX::Zero(n, n);
+    padded.topLeftCorner(m, m) = 0.5 * (inverse + inverse.transpose());
+    return {mean, padded, set_aside};
 }
 
 double aside_cost(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept {
@@ -82,9 +109,10 @@ double aside_cost(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept 
 
 double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept {
     const Eigen::Map<const VecX> x(X.front().data(), prior.mean.size());
-    double distance = 0.0;
-    for (Eigen::Index c = 0; c < x.size(); ++c)
-        distance += (x[c] - prior.mean[c]) * prior.information.col(c).dot(x - prior.mean);
+    const double s = prior.scale(X);
+    double distance = (s - 1.0) * (s - 1.0) * prior.scale_information;
+    const auto shape = (x - prior.mean - (s - 1.0) * prior.outline) / s;
+    for (Eigen::Index c = 0; c < x.size(); ++c) distance += shape[c] * prior.information.col(c).dot(shape);
     return distance;
 }
 

@@ -45,6 +45,27 @@ void add_lengths(std::span<const LengthMeasurement> lengths, std::span<const Vec
     }
 }
 
+/// The prior at X, divided by its factor. With e the difference of X from the told landmarks but for its scale s, y =
+/// P0^-1 e, p = P0^-1 x0 and i = x0^T p: d = (s - 1) x0 + e / s has
+///   J^T P0^-1 d = (s - 1 - y^T e / (i s^3)) p + y / s^2,
+///   J^T P0^-1 J = P0^-1 / s^2 + ((1 - 1 / s^2) / i + y^T e / (i^2 s^4)) p p^T - (y p^T + p y^T) / (i s^3).
+void add_prior(const LandmarkPrior& prior, std::span<const Vec3> X, double factor, Workspace& workspace) noexcept {
+    const double s = prior.scale(X);
+    const double i = prior.scale_information;
+    const VecX& p = prior.pull;
+    workspace.step = stacked(X) - prior.mean - (s - 1.0) * prior.outline;
+    VecX& y = workspace.pulled;
+    y.noalias() = prior.information * workspace.step;
+    const double shape = y.dot(workspace.step);
+    const double own = (1.0 - 1.0 / (s * s)) / i + shape / (i * i * std::pow(s, 4));
+    const double mixed = -1.0 / (i * std::pow(s, 3));
+    workspace.S += prior.information / (factor * s * s);
+    workspace.g += ((s - 1.0 - shape / (i * std::pow(s, 3))) * p + y / (s * s)) / factor;
+    workspace.D += prior.information.diagonal() / (factor * s * s);
+    for (Eigen::Index c = 0; c < p.size(); ++c)
+        workspace.S.col(c) += ((own * p[c] + mixed * y[c]) / factor) * p + (mixed * p[c] / factor) * y;
+}
+
 }  // namespace
 
 Workspace::Workspace(int landmarks)
@@ -54,7 +75,7 @@ Workspace::Workspace(int landmarks)
       X_before(static_cast<std::size_t>(landmarks), Vec3::Zero()) {
     product.setZero(3 * landmarks, 3 * landmarks);
     S.setZero(3 * landmarks, 3 * landmarks);
-    for (VecX* vector : {&g, &dX, &D, &step}) vector->setZero(3 * landmarks);
+    for (VecX* vector : {&g, &dX, &D, &step, &pulled}) vector->setZero(3 * landmarks);
 }
 
 double posterior_cost(Problem& problem) noexcept {
@@ -104,11 +125,7 @@ void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Worksp
     workspace.D *= data_scale;
     add_lengths(problem.lengths, X, workspace);
     if (!problem.prior) return;
-    const double scale = 1.0 / problem.prior_factors.believed;
-    workspace.S += scale * problem.prior->information;
-    workspace.D += scale * problem.prior->information.diagonal();
-    workspace.step = scale * (stacked(X) - problem.prior->mean);
-    workspace.g.noalias() += problem.prior->information * workspace.step;
+    add_prior(*problem.prior, X, problem.prior_factors.believed, workspace);
     workspace.S.diagonal() += problem.prior->aside;
     workspace.D += problem.prior->aside;
     workspace.g += problem.prior->aside.cwiseProduct(stacked(X));

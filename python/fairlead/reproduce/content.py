@@ -102,13 +102,13 @@ def _number(value: Cell, column: Column) -> str:
 
 
 def significant(value: float, digits: int) -> str:
-    """A number with so many significant digits, never in powers of ten below a million."""
+    """A number with so many significant digits, never in powers of ten below a million; what is rounding error is 0."""
     if not abs(value) < float("inf"):
         return "inf"
     if value == 0.0 or abs(value) >= 1e6:
         return f"{value:.{digits}g}"
     decimals = max(digits - 1 - _exponent(value, digits), 0)
-    return f"{value:.{decimals}f}" if decimals < 9 else f"{value:.{digits}g}"
+    return f"{value:.{decimals}f}" if decimals < 9 else "0"
 
 
 def _exponent(value: float, digits: int) -> int:

@@ -13,14 +13,23 @@ namespace fairlead::window {
 /// sigma holds three standard deviations per landmark [m]; scale_sigma [-] is the common error of scale.
 [[nodiscard]] MatX landmark_covariance(std::span<const Vec3> X0, std::span<const Vec3> sigma, double scale_sigma);
 
-/// X ~ N(mean, alpha P0), held as mean and information P0^-1; its last entries may be no landmarks, but N(0, P0)
-/// whatever alpha is. Made by `make_prior`: all three have 3N entries.
+/// d(X) ~ N(0, alpha P0) with d the difference of X from the told landmarks in the told ones' size, docs/estimator.md
+/// eq. (2); the last entries may be no landmarks, but N(0, P0) whatever alpha is.
 struct LandmarkPrior {
+    /// Throws nothing; `aside` has 3N entries.
+    LandmarkPrior(VecX mean, MatX information, VecX aside);
+
     VecX mean;         ///< 3N [m], landmark-major
     MatX information;  ///< 3N x 3N [1/m^2]
     VecX aside;        ///< 3N [1/m^2], about zero: of the entries that are no landmarks, which no factor scales
 
+    VecX outline;              ///< x0, 3N [m]: the told landmarks about their middle
+    VecX pull;                 ///< P0^-1 x0 [1/m]
+    double scale_information;  ///< x0^T P0^-1 x0 [-]: of the scale that is common to all landmarks
+
     [[nodiscard]] int landmarks() const noexcept { return static_cast<int>(mean.size() / 3); }
+    /// s of X as x0 and P0 see it; 1 is the told size.
+    [[nodiscard]] double scale(std::span<const Vec3> X) const noexcept;
 };
 
 /// Throws std::invalid_argument unless the covariance is symmetric, finite and positive semidefinite. Directions
@@ -28,7 +37,7 @@ struct LandmarkPrior {
 /// stays finite. The last `aside` entries are no landmarks; of their covariance the diagonal counts.
 [[nodiscard]] LandmarkPrior make_prior(std::span<const Vec3> X0, const MatX& covariance, int aside = 0);
 
-/// Squared Mahalanobis distance (X - X0)^T P0^-1 (X - X0) [-]. Allocates nothing.
+/// Squared Mahalanobis distance d^T P0^-1 d [-]. Allocates nothing.
 [[nodiscard]] double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept;
 
 /// The same of what is set aside, sum x^2 / P0.

@@ -22,7 +22,7 @@ struct LengthMeasurement {
 };
 
 /// The negative log posterior of landmarks X and view states T_k, docs/estimator.md eq. (1) and (3):
-///   E = 1/2 [ (sum_k sum_j rho(s_kj) + compressed views) / noise_factor + (X - X0)^T P0^-1 (X - X0) / believed
+///   E = 1/2 [ (sum_k sum_j rho(s_kj) + compressed views) / noise_factor + d(X)^T P0^-1 d(X) / believed
 ///             + sum of known distances ((|X_a - X_b| - length) / sigma)^2 ].
 struct Problem {
     Camera camera;
@@ -49,7 +49,7 @@ struct Workspace {
 
     Eliminator eliminator;
     MatX S;  ///< 3N x 3N, lower triangle
-    VecX g, dX, D, step;
+    VecX g, dX, D, step, pulled;
     dense::Cholesky cholesky;  ///< of S
     MatX product;              ///< scratch
     PriorEvidence evidence;

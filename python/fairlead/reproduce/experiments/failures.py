@@ -119,5 +119,5 @@ def truthful(tracks: Rows[tuple[Track, np.ndarray]]) -> float:
 def statuses(tracks: Rows[Track]) -> str:
     """Shares of the frames in per cent."""
     status = np.concatenate([track.status for track in tracks])
-    tracking, coasting = float((status == 1).mean()), float((status == 2).mean())
-    return f"{100 * tracking:.0f} / {100 * coasting:.0f} / {100 * (1 - tracking - coasting):.0f}"
+    shares = (status == 1, status == 2, (status != 1) & (status != 2))
+    return " / ".join(f"{100.0 * share.mean():.0f}" for share in shares)
