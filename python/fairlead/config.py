@@ -238,7 +238,7 @@ class ReproduceConfig:
     quick: bool = False
     """3 told models a sequence instead of 20, 50 simulated runs a setting instead of 1000."""
     only: tuple[str, ...] = ()
-    """Only these sections, e.g. landmarks poses model times studies failures real."""
+    """Only these sections, e.g. landmarks poses model times noise angle failures real."""
     sequences: tuple[Path, ...] = ()
     """Folders of sequences with truth.csv, or such sequences; the four flights that come along if not given."""
     networks: tuple[Path, ...] = ()

@@ -19,9 +19,12 @@ class View:
     frame: int
     """Number of the image."""
     stamp_ns: int
+    """Time it was taken [ns]."""
     landmarks: tuple[str, ...]
     pixels: Pixels
+    """(n, 2) [px]; (0, 0) is the centre of the top-left pixel."""
     covariances: PixelCovariances
+    """(n, 2, 2) [px^2]"""
     scores: Scores | None = None
     """Confidence of the detector, as it came [-]."""
 
