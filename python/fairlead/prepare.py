@@ -17,7 +17,7 @@ from fairlead.io.camera import load_camera
 from fairlead.io.csv_lines import CsvWriter
 from fairlead.io.errors import InputError
 from fairlead.io.observations import read_views
-from fairlead.io.target import load_target, save_target
+from fairlead.io.target import check_target_name, load_target, save_target
 from fairlead.opencv.filters import write_image
 from fairlead.sources.bop import BopSource
 from fairlead.sources.image_folder import SUFFIXES as IMAGES
@@ -154,6 +154,7 @@ def bootstrap(config: BootstrapConfig) -> Bootstrapped:
     lengths = (config.tag_size_m, config.tag_sigma_m, config.distance_sigma_m, (config.distance or (0, 0, None))[2])
     if any(length is not None and not 0.0 < length < 1e6 for length in lengths):
         raise UsageError("bootstrap: expected lengths above 0 m")
+    check_target_name(config.output)
     camera = load_camera(config.camera)
     views = _views(config, camera)
     name = config.name or config.output.stem

@@ -151,13 +151,25 @@ def _read_covariance(path: Path, names: tuple[str, ...]) -> ModelCovariance:
     return covariance[np.ix_(rows, rows)]
 
 
+def check_target_name(path: Path | str) -> Path:
+    """The path, if a target can be written there. Raises InputError unless it ends in .toml and no folder is there."""
+    path = Path(path)
+    for place in (path, path.with_suffix(".npz")):
+        if place.is_dir():
+            raise InputError(place, "is a folder; expected the name of a target file that ends in .toml")
+    if path.suffix.lower() != ".toml":
+        raise InputError(path, "is no name of a target; expected one that ends in .toml")
+    return path
+
+
 def save_target(path: Path | str, target: Target) -> None:
     """Write target.toml, and beside it `<stem>.npz` with the full covariance; each replaces the old file at once.
 
     The sigmas in the text are the roots of the diagonal, for people; read back, the npz replaces them.
     A mesh that does not lie under the new file's folder is named in a comment only.
+    Raises InputError for a name that `check_target_name` refuses, before anything is written.
     """
-    path = Path(path)
+    path = check_target_name(path)
     side = path.with_suffix(".npz")
     sigmas = np.sqrt(np.clip(np.diag(target.covariance), 0.0, None)).reshape(-1, 3)
     temporary = side.with_name(f".{side.stem}.part.npz")

@@ -168,6 +168,24 @@ def test_covariance_beside_replaces_the_sigmas_in_any_order(tmp_path: Path) -> N
     assert np.array_equal(load_target(tmp_path / "refined.toml").covariance, target.covariance)
 
 
+def test_a_name_that_no_target_can_have_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    target = load_target(write(tmp_path, GOOD))
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder.toml").mkdir()
+    (tmp_path / "beside.npz").mkdir()
+    before = sorted(tmp_path.rglob("*"))
+    for name, message in (
+        ("pen.npz", r"pen\.npz: is no name of a target; expected one that ends in \.toml"),
+        ("pen", r"pen: is no name of a target"),
+        ("folder", r"folder: is a folder"),
+        ("folder.toml", r"folder\.toml: is a folder"),
+        ("beside.toml", r"beside\.npz: is a folder"),
+    ):
+        with pytest.raises(InputError, match=message):
+            save_target(tmp_path / name, target)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
 @pytest.fixture
 def refined(tmp_path: Path) -> Path:
     save_target(tmp_path / "refined.toml", load_target(write(tmp_path, GOOD)))
