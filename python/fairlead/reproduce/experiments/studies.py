@@ -18,6 +18,8 @@ from fairlead.study.scores import COLUMNS
 from fairlead.study.settings import VIEWS, Setting, settings_of
 from fairlead.study.summary import Line, crossing, summarise
 
+SEGMENTS_SHARE = 5
+"""Segments of one flight, of up to 181 views, have so many times fewer runs."""
 _OUTLIERS = "s1-a90-m1-o*"
 """Settings of the grid."""
 _SHOWN = ("epnp", "single", "window", "window-5", "map", "online", "true-model", "bound")
@@ -31,10 +33,10 @@ _ERRORS = (
 
 def noise(context: Context) -> Section:
     """Figure 7."""
-    lines = _lines(context, "noise")
+    lines = _lines(context, "noise", context.study_runs)
     settings = settings_of("noise")
     wild = [setting for setting in settings_of("grid") if fnmatch.fnmatchcase(setting.name, _OUTLIERS)]
-    wild_lines = _lines(context, "grid", _OUTLIERS)
+    wild_lines = _lines(context, "grid", context.study_runs, _OUTLIERS)
     x = [setting.sigma_px for setting in settings]
     title = f"90 deg arc at 1 km, {VIEWS} views, model error 1 m, {context.study_runs} runs a setting"
     places = {name: _last_gain(lines, settings, x, name) for name in ("window-5", "window", "map")}
@@ -62,15 +64,17 @@ def noise(context: Context) -> Section:
 
 def angle(context: Context) -> Section:
     """Figure 8: ten views at every angle, and segments of one flight."""
-    lines = _lines(context, "angle")
+    runs, fewer = context.study_runs, max(context.study_runs // SEGMENTS_SHARE, 1)
+    _lines(context, "angle", runs, f"*-v{VIEWS}")
+    lines = _lines(context, "angle", fewer)
     tables: list[Table] = []
     pictures: list[Picture] = []
-    for name, words, settings in (
-        ("figure8", f"{VIEWS} views at every angle", [s for s in settings_of("angle") if s.views == VIEWS]),
-        ("figure8_segments", "one view a degree", [s for s in settings_of("angle") if s.views != VIEWS]),
+    for name, words, count, settings in (
+        ("figure8", f"{VIEWS} views at every angle", runs, [s for s in settings_of("angle") if s.views == VIEWS]),
+        ("figure8_segments", "one view a degree", fewer, [s for s in settings_of("angle") if s.views != VIEWS]),
     ):
         x = [setting.angle_deg for setting in settings]
-        title = f"Arc at 1 km, {words}, 1 px, model error 1 m, {context.study_runs} runs a setting"
+        title = f"Arc at 1 km, {words}, 1 px, model error 1 m, {count} runs a setting"
         tables += _tables(name, f"angle [deg], {words}", lines, settings, x)
         pictures += _pictures(name, lines, settings, x, "angle [deg]", title)
     return Section(
@@ -80,14 +84,14 @@ def angle(context: Context) -> Section:
         words=["The publication cut segments out of one flight, so that the number of views grew with the angle."],
         tables=tables,
         pictures=pictures,
-        facts={"runs a setting": str(context.study_runs)},
+        facts={"runs a setting": f"{runs}, of segments {fewer}"},
     )
 
 
-def _lines(context: Context, kind: StudyKind, only: str = "*") -> list[Line]:
+def _lines(context: Context, kind: StudyKind, runs: int, only: str = "*") -> list[Line]:
     """Do what is missing; the folder belongs to this estimator alone."""
     folder = context.cache / "studies" / f"{kind}-{core_digest()[:12]}"
-    run_study(StudyConfig(study=kind, output=folder, runs=context.study_runs, only=only), context.progress)
+    run_study(StudyConfig(study=kind, output=folder, runs=runs, only=only), context.progress)
     names = tuple(method.name for method in METHODS)
     return summarise(settings_of(kind), names, results_of(read_rows(folder), COLUMNS))
 
