@@ -13,9 +13,9 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated
 
-import tyro
 from tyro.conf import subcommand
 
+from fairlead.arguments import parse_arguments
 from fairlead.config import (
     Config,
     DemoConfig,
@@ -33,6 +33,7 @@ from fairlead.target_config import AnnotateConfig, BootstrapConfig, TargetConfig
 from fairlead.train.config import CalibrateConfig, ExportConfig, NetworkConfig, TrainConfig
 
 if TYPE_CHECKING:
+    from fairlead.run import RunSummary
     from fairlead.study import Replay
 
 _DESCRIPTION = "Monocular 6D pose of a rigid target whose 3D model is only roughly known."
@@ -67,10 +68,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     before = {number: signal.signal(number, _stop) for number in (signal.SIGINT, signal.SIGTERM)}
     stopped = False
     try:
-        config: Config | NetworkConfig | TargetConfig = tyro.cli(
-            _Command, prog="fairlead", description=_DESCRIPTION, args=arguments
-        )
-        return _run(config)
+        words = sys.argv[1:] if arguments is None else arguments
+        if list(words) == ["--version"]:
+            return _version()
+        return _run(parse_arguments(_Command, words, prog="fairlead", description=_DESCRIPTION))
     except (InputError, UsageError) as error:
         return _complain(str(error), 2)
     except OSError as error:
@@ -104,6 +105,13 @@ def _complain(message: str, status: int) -> int:
     return status
 
 
+def _version() -> int:
+    import fairlead
+
+    sys.stdout.write(f"fairlead {fairlead.__version__}\n")
+    return 0
+
+
 def _run(config: Config | NetworkConfig | TargetConfig) -> int:
     if isinstance(config, SimulateConfig):
         return _simulate(config)
@@ -131,16 +139,26 @@ def _run(config: Config | NetworkConfig | TargetConfig) -> int:
         _show_metrics(run.evaluate(config))
         return 0
     verb = run.track(config, progress_bar) if isinstance(config, TrackConfig) else run.refine(config, progress_bar)
+    return _close(verb, config.min_coverage)
+
+
+def _close(verb: "RunSummary", min_coverage: float) -> int:
+    """The closing lines of a run, and its exit status."""
     counts = f"{verb.frames} frames, {verb.frames_with_pose} with a pose ({verb.coverage:.1%})"
     if verb.frames_in_doubt:
         counts += f", {verb.frames_in_doubt} contradict what was told (see the reasons in poses.csv)"
+    if verb.observations_dropped:
+        dropped = "without finite numbers or a positive definite covariance, or of a landmark twice in a frame"
+        counts += f", {verb.observations_dropped} observations dropped ({dropped})"
     if verb.report is not None:
         _show_metrics(verb.report)
     if verb.range_bias is not None:
         counts += ", range finder off by {:+.2f} ± {:.2f} m".format(*verb.range_bias)
     sys.stdout.write(f"{verb.output}: {counts}\n")
-    if verb.coverage < config.min_coverage:
-        return _complain(f"coverage {verb.coverage:.1%} is below --min-coverage {config.min_coverage:.1%}", 1)
+    if verb.unjudged is not None:
+        return _complain(verb.unjudged, 2)
+    if verb.coverage < min_coverage:
+        return _complain(f"coverage {verb.coverage:.1%} is below --min-coverage {min_coverage:.1%}", 1)
     return 0
 
 

@@ -45,6 +45,10 @@ class RunSummary:
     """With a pose, but the data contradict what was told."""
     report: Path | None
     """Where truth was given."""
+    unjudged: str | None = None
+    """Why there is no report although truth was given, in one line."""
+    observations_dropped: int = 0
+    """That the estimator could not use, `Estimate.n_dropped`."""
     range_bias: tuple[float, float] | None = None
     """What the range finder always reads too much and its standard deviation [m], where it was looked for."""
 
@@ -201,8 +205,15 @@ def told_options(config: InputConfig, source: ViewSource, readings: SensorReadin
 
 
 def tracker_options(path: Path | None) -> TrackerOptions:
-    """The options of a file, or the defaults."""
-    return TrackerOptions() if path is None else load_options(path, TrackerOptions())
+    """The options of a file, or the defaults. Raises InputError, which names that file."""
+    if path is None:
+        return TrackerOptions()
+    options = load_options(path, TrackerOptions())
+    try:
+        options.check()
+    except ValueError as error:
+        raise InputError(path, str(error)) from error
+    return options
 
 
 def _load(config: InputConfig) -> tuple[Target, Camera]:
@@ -215,8 +226,8 @@ def _load(config: InputConfig) -> tuple[Target, Camera]:
         check_outputs(config, list(paths.values()))
     elif isinstance(config.source, str):
         raise UsageError(f"{config.source} has no end: use track")
-    if config.truth is not None:
-        read_truth(config.truth)  # found out now rather than at the end of a long run
+    if config.truth is not None and not read_truth(config.truth):  # found out now, not at the end of a long run
+        raise InputError(config.truth, "holds no poses")
     target = load_target(config.target)
     if len(target.landmarks) < MIN_LANDMARKS:
         raise InputError(config.target, f"expected at least {MIN_LANDMARKS} landmarks, got {len(target.landmarks)}")
@@ -252,13 +263,18 @@ def _record(command: str, config: InputConfig, options: TrackerOptions | None) -
 
 
 def _finish(config: InputConfig, folder: RunFolder) -> RunSummary:
-    report = None
+    report = unjudged = None
     if config.truth is not None:
-        report = evaluate(EvaluateConfig(run=config.output, truth=config.truth))
+        try:
+            report = evaluate(EvaluateConfig(run=config.output, truth=config.truth))
+        except InputError as error:  # the run is done, and stays
+            unjudged = str(error)
     return RunSummary(
         output=config.output,
         frames=folder.record.frames,
         frames_with_pose=folder.record.frames_with_pose,
         frames_in_doubt=folder.frames_in_doubt,
         report=report,
+        unjudged=unjudged,
+        observations_dropped=folder.observations_dropped,
     )

@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 
+import fairlead
 from fairlead.cli import main
 from fairlead.io.poses import read_poses, read_truth
 from fairlead.io.target import load_target
@@ -51,6 +52,28 @@ def test_an_option_file_reaches_the_estimator(flight: Flight) -> None:
     record = json.loads((flight.out / "run.json").read_text())
     assert record["estimator"]["max_views"] == 7
     assert record["seed"] == 3
+
+
+@pytest.mark.parametrize("verb", ["track", "refine"])
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("seed = -1", "seed: got -1, expected a whole number >= 0"),
+        ("max_views = 99999999999999", "max_views: got 99999999999999, expected a smaller whole number"),
+        ("max_views = 3.5", "max_views: expected a whole number, got 3.5"),
+        ('gate = "a"', "gate: expected a number, got 'a'"),
+        ("gate = -1.0", "gate: got -1.000000, expected a positive number"),
+        ('motion = "warp"', "got 'warp', expected none, range, target or world"),
+    ],
+)
+def test_an_option_that_cannot_be_is_blamed_on_its_file(
+    flight: Flight, capsys: pytest.CaptureFixture[str], verb: str, line: str, message: str
+) -> None:
+    options = flight.folder / "options.toml"
+    options.write_text(f"{line}\n")
+    error = one_line(flight, capsys, status=flight.run(verb, options=options))
+    assert error.startswith(f"fairlead: {options}: ")
+    assert message in error
 
 
 def test_too_little_coverage_is_1_and_is_named(flight: Flight, capsys: pytest.CaptureFixture[str]) -> None:
@@ -151,14 +174,75 @@ def test_results_of_an_earlier_run_do_not_stay(flight: Flight) -> None:
     assert (flight.out / "notes.txt").read_text() == "mine"
 
 
+TRACK = ["track", "x.csv", "--target", "t.toml", "--camera", "c.yaml", "-o", "run"]
+
+
 @pytest.mark.parametrize(
-    "arguments", [[], ["fly"], ["track"], ["track", "x", "--fps", "-1"], ["track", "--targte", "x"]]
+    ("arguments", "message"),
+    [
+        ([], "Expected one of {demo, track, refine"),
+        (["fly"], "Unrecognized options: fly"),
+        (["track"], "Missing from fairlead track: SOURCE"),
+        (["track", "x.csv", "--targte", "x"], "Unrecognized options: --targte"),
+        ([*TRACK, "--fps", "0"], "--fps: expected a positive number of frames per second, got 0.0"),
+        ([*TRACK, "--fps", "fast"], "could not convert string to float: 'fast'"),
+        ([*TRACK, "--min-coverage", "2"], "--min-coverage: expected a share between 0 and 1, got 2.0"),
+        ([*TRACK, "--range-bias-sigma-m", "-1"], "--range-bias-sigma-m: expected zero or more metres, got -1.0"),
+        ([*TRACK, "--method", "xx"], "invalid choice 'xx' for argument '--method'"),
+    ],
 )
-def test_wrong_arguments_are_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(arguments)
-    assert ended.value.code == 2
-    assert capsys.readouterr().err
+@pytest.mark.parametrize("terminal", [False, True])
+def test_wrong_arguments_are_one_line_and_2(
+    arguments: list[str],
+    message: str,
+    terminal: bool,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: terminal)
+    monkeypatch.setenv("TERM", "xterm")
+    assert main(arguments) == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert output.err.startswith("fairlead: ")
+    assert message in output.err
+    assert output.err.count("\n") == 1
+    assert not set(output.err) & set("│─╭\x1b")
+
+
+def test_the_version_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    output = capsys.readouterr()
+    assert output.out == f"fairlead {fairlead.__version__}\n"
+    assert output.err == ""
+
+
+@pytest.mark.parametrize("verb", ["track", "refine"])
+def test_observations_with_useless_variances_are_said_once(
+    flight: Flight, capsys: pytest.CaptureFixture[str], verb: str
+) -> None:
+    header, *lines = flight.source.read_text().splitlines()
+    spoilt = [",".join([*line.split(",")[:5], "-1.0", "0.0", "-1.0"]) for line in lines]
+    if "score" in header:
+        spoilt = [f"{line},1.0" for line in spoilt]
+    flight.source.write_text("\n".join([header, *spoilt]) + "\n")
+    assert flight.run(verb) == 1
+    output = capsys.readouterr()
+    dropped = "without finite numbers or a positive definite covariance, or of a landmark twice in a frame"
+    counts = f"20 frames, 0 with a pose (0.0%), 140 observations dropped ({dropped})"
+    assert output.out == f"{flight.out}: {counts}\n"
+    assert output.err.count("\n") == 1
+
+
+def test_a_text_file_is_no_video(flight: Flight, capsys: pytest.CaptureFixture[str]) -> None:
+    text = flight.folder / "observations.txt"
+    text.write_text(flight.source.read_text())
+    tags = flight.folder / "tags.toml"
+    tags.write_text(
+        (flight.folder / "target.toml").read_text().replace('"p', '"tag').replace('"\nposition', '_tl"\nposition')
+    )
+    error = one_line(flight, capsys, status=flight.run(source=text, detector="aruco:DICT_4X4_100", target=tags))
+    assert error == f"fairlead: {text}: is text; expected a video\n"
 
 
 def test_help_names_every_verb_and_loads_nothing_heavy() -> None:

@@ -155,6 +155,29 @@ def test_a_view_may_hold_numbers_that_are_not_finite_and_landmarks_twice() -> No
         )
 
 
+def test_a_view_of_nothing_takes_empty_lists() -> None:
+    view = View(frame=0, stamp_ns=0, landmarks=(), pixels=[], covariances=[])
+    assert view.pixels.shape == (0, 2)
+    assert view.covariances.shape == (0, 2, 2)
+    with pytest.raises(ValueError, match=r"view pixels: expected shape \(1, 2\), got \(0,\)"):
+        View(frame=0, stamp_ns=0, landmarks=("a",), pixels=[], covariances=[])
+
+
+@pytest.mark.parametrize(
+    ("pixels", "came"),
+    [
+        (np.ma.array([[1.0, 2.0]], mask=[[False, True]]), "MaskedArray"),
+        (np.array([[1.0, 2.0j]]), "complex numbers"),
+        ([[1.0, 2.0j]], "complex numbers"),
+        ([[1.0, 2.0], [3.0]], "list"),
+        ([["left", "right"]], "list"),
+    ],
+)
+def test_an_array_is_not_made_by_leaving_something_out(pixels: Any, came: str) -> None:
+    with pytest.raises(ValueError, match=rf"view pixels: expected numbers of shape \(1, 2\), got {came}$"):
+        View(frame=0, stamp_ns=0, landmarks=("a",), pixels=pixels, covariances=np.zeros((1, 2, 2)))
+
+
 def test_arrays_are_copied_and_read_only() -> None:
     positions = np.zeros((2, 3))
     record = target(positions=positions)

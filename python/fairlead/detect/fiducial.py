@@ -33,7 +33,7 @@ class TagDetector:
         self._cells = opencv.marker_cells(family)
         self._wanted = _wanted(target, _TAG_LANDMARK, "tag<id>_tl|tr|br|bl")
 
-    def detect(self, image: opencv.Image, frame: int, stamp_ns: int) -> View:
+    def detect(self, image: opencv.Image | opencv.GreyImage, frame: int, stamp_ns: int) -> View:
         """The corners of all tags that could be measured. Raises ValueError for an image of another kind."""
         grey = opencv.grey(image)
         found = opencv.marker_corners(grey, self._family)
@@ -113,7 +113,7 @@ class BoardDetector:
         self._board = board
         self._wanted = _wanted(target, _BOARD_LANDMARK, "corner<number>")
 
-    def detect(self, image: opencv.Image, frame: int, stamp_ns: int) -> View:
+    def detect(self, image: opencv.Image | opencv.GreyImage, frame: int, stamp_ns: int) -> View:
         """The corners that could be measured. Raises ValueError for an image of another kind."""
         grey = opencv.grey(image)
         found = self._board.find(grey)

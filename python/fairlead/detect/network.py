@@ -12,7 +12,7 @@ from fairlead.detect.onnx import Network
 from fairlead.detect.roi import Follower
 from fairlead.detect.window import window_about
 from fairlead.io.errors import InputError
-from fairlead.opencv import Image
+from fairlead.opencv import GreyImage, Image, coloured
 from fairlead.types import Camera, Correlation, Estimate, Target, View
 
 FOLLOW_LANDMARKS = 4
@@ -44,8 +44,12 @@ class NetworkDetector:
         """As its card says: neighbouring images show the same pixels of the same target."""
         return self.network.card.calibration.correlation
 
-    def detect(self, image: Image, frame: int, stamp_ns: int) -> View:
-        """The landmarks that are seen; an empty view where the target is not found."""
+    def detect(self, image: Image | GreyImage, frame: int, stamp_ns: int) -> View:
+        """The landmarks that are seen; an empty view where the target is not found.
+
+        Raises ValueError for an image that is neither blue, green, red nor grey, of 8 bits each.
+        """
+        image = coloured(image)
         sighting = self._followed(image, stamp_ns)
         if sighting is None:
             self.acquisitions += 1

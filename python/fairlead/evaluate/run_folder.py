@@ -23,12 +23,12 @@ from fairlead.io.camera import load_camera
 from fairlead.io.documents import read_text
 from fairlead.io.errors import InputError
 from fairlead.io.model_history import read_model_history
-from fairlead.io.observations import read_views
+from fairlead.io.observations import read_recorded_views
 from fairlead.io.poses import read_poses, read_truth
 from fairlead.io.run_record import RunRecord, input_file, read_run_record, write_json
 from fairlead.io.target import load_target
 from fairlead.io.timing import read_timing
-from fairlead.types import Camera, Points3, Target, TruthPose
+from fairlead.types import Camera, Estimate, Points3, Target, TruthPose
 
 _log = logging.getLogger(__name__)
 
@@ -48,7 +48,9 @@ class KnownTruth:
     """What the runs are judged by; all of it optional."""
 
     poses: list[TruthPose] | None
+    poses_file: Path | None
     target: Target | None
+    target_file: Path | None
     vertices: Points3 | None
     tolerance_ns: int
 
@@ -79,7 +81,8 @@ def evaluate_run(
     tolerance_ns
         Largest difference of stamps between truth and estimate [ns].
 
-    Raises InputError for files that cannot be used.
+    Raises InputError for files that cannot be used, a truth of other images, or true landmarks of another target;
+    nothing is written then.
     """
     label = _method(read_run_record(run / "run.json"))
     return evaluate_runs(
@@ -109,7 +112,9 @@ def evaluate_runs(
         raise ValueError("evaluate_runs: expected at least one run, got none")
     known = KnownTruth(
         poses=None if truth is None else read_truth(truth),
+        poses_file=truth,
         target=None if target_true is None else load_target(target_true),
+        target_file=target_true,
         vertices=None if mesh is None else _vertices(mesh),
         tolerance_ns=tolerance_ns,
     )
@@ -144,23 +149,51 @@ def _judge(run: Path, known: KnownTruth) -> JudgedRun:
     target, camera = load_target(run / "target.toml"), load_camera(run / "camera.yaml")
     refined, history, timing = (run / name for name in ("target_refined.toml", "model_history.csv", "timing.csv"))
     observations = run / "observations.csv"
+    _check_shared(run, target, known)
+    estimates = read_poses(run / "poses.csv")
     vertices = known.vertices
     if vertices is None and known.poses is not None:
         vertices = _named_vertices(record, known.target or target)
     evaluation = evaluate(
         known.poses,
-        read_poses(run / "poses.csv"),
+        estimates,
         target0=target,
         target_estimated=load_target(refined) if refined.exists() else None,
         target_true=known.target,
         mesh=vertices,
-        views=list(read_views(observations)) if observations.exists() else None,
+        views=list(read_recorded_views(observations)) if observations.exists() else None,
         camera=camera,
         timings_ms=np.array([each.update_ms for each in read_timing(timing)]) if timing.exists() else None,
         models=read_model_history(history, target.landmarks) if history.exists() else None,
         tolerance_ns=known.tolerance_ns,
     )
+    _check_matched(run, estimates, known, evaluation)
     return JudgedRun(record=record, camera=camera, target=target, evaluation=evaluation)
+
+
+def _check_shared(run: Path, target: Target, known: KnownTruth) -> None:
+    """Raises InputError where the true target has none of the run's landmarks."""
+    path, true = known.target_file, known.target
+    if path is None or true is None or set(true.landmarks) & set(target.landmarks):
+        return
+    came, expected = ", ".join(true.landmarks[:4]), ", ".join(target.landmarks[:4])
+    raise InputError(
+        path, f"has no landmark of {run / 'target.toml'}: expected some of {expected}, ... got {came}, ..."
+    )
+
+
+def _check_matched(run: Path, estimates: list[Estimate], known: KnownTruth, evaluation: Evaluation) -> None:
+    """Raises InputError where the truth tells of no frame of the run."""
+    path, poses, against = known.poses_file, known.poses, evaluation.truth
+    if path is None or poses is None or against is None or against.matching.n_matched:
+        return
+    ours, theirs = (_span([each.stamp_ns for each in of]) for of in (estimates, poses))
+    raise InputError(path, f"tells of no frame of {run}: expected stamps_ns like {ours}, got {theirs}")
+
+
+def _span(stamps_ns: list[int]) -> str:
+    """First and last of the stamps [ns], and how many there are."""
+    return f"{min(stamps_ns)} to {max(stamps_ns)} ({len(stamps_ns)})" if stamps_ns else "none"
 
 
 def _vertices(path: Path) -> Points3:

@@ -4,17 +4,22 @@
 
 import csv
 import io
+import logging
 import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import cast
+from typing import TypeVar, cast
 
 from fairlead.io.documents import describe_os_error
 from fairlead.io.errors import InputError
 from fairlead.io.fields import nearest
 
 MAX_LINE_BYTES = 65536
+
+_log = logging.getLogger(__name__)
+
+_Row = TypeVar("_Row")
 
 
 def read_csv(
@@ -79,6 +84,32 @@ class _Lines(Iterator[str]):
 
     def close(self) -> None:
         self._stream.close()
+
+
+def without_torn_end(rows: Iterator[_Row], path: Path) -> Iterator[_Row]:
+    """The rows that are read from a file; a last line that was torn by a crash is left out with a warning.
+
+    Raises InputError as `rows` does for anything else.
+    """
+    while True:
+        try:
+            row = next(rows)
+        except StopIteration:
+            return
+        except InputError as error:
+            if not _is_torn(path, error.line):
+                raise
+            _log.warning("%s: the last line is torn and left out", path)
+            return
+        yield row
+
+
+def _is_torn(path: Path, line: int | None) -> bool:
+    """Whether this is the last line and does not end with a line feed (or its bytes are no text)."""
+    if line is None or line == 1:
+        return False
+    data = path.read_bytes()
+    return not data.endswith(b"\n") and data.count(b"\n") + 1 == line
 
 
 def count_lines(path: Path) -> int:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fairlead.io.csv_lines import CsvWriter, count_lines, integer_cell, number_cell, read_csv
+from fairlead.io.csv_lines import CsvWriter, count_lines, integer_cell, number_cell, read_csv, without_torn_end
 from fairlead.io.errors import InputError
 from fairlead.types import View
 
@@ -47,6 +47,16 @@ def read_views(path: Path | str) -> Iterator[View]:
 
         return _views(parquet_rows(path), path)
     raise InputError(path, "expected a table of observations ending in .csv or .parquet")
+
+
+def read_recorded_views(path: Path | str) -> Iterator[View]:
+    """As read_views, of the observations.csv that a run wrote.
+
+    A last line that was torn by a crash is left out with a warning, as of poses.csv. Raises InputError (file, line)
+    for anything else.
+    """
+    path = Path(path)
+    return _views(without_torn_end(_csv_rows(path), path), path)
 
 
 def count_observations(path: Path | str) -> int:

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """poses.csv <-> Estimates, truth.csv <-> TruthPoses, docs/files.md."""
 
-import logging
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -11,11 +10,9 @@ from typing import cast, get_args
 import numpy as np
 
 from fairlead.geometry import matrix_from_quat_xyzw, quat_xyzw_from_matrix
-from fairlead.io.csv_lines import CsvWriter, integer_cell, number_cell, read_csv
+from fairlead.io.csv_lines import CsvWriter, integer_cell, number_cell, read_csv, without_torn_end
 from fairlead.io.errors import InputError
 from fairlead.types import Estimate, Matrix4, Matrix6, Status, TruthPose
-
-_log = logging.getLogger(__name__)
 
 POSE_COLUMNS = ("tx", "ty", "tz", "qx", "qy", "qz", "qw")
 TRUTH_COLUMNS = ("frame", "stamp_ns", *POSE_COLUMNS)
@@ -40,19 +37,7 @@ def read_poses(path: Path | str) -> list[Estimate]:
 def iterate_poses(path: Path | str) -> Iterator[Estimate]:
     """As read_poses, one after another."""
     path = Path(path)
-    rows = read_csv(path, COLUMNS)
-    while True:
-        try:
-            line, cells = next(rows)
-            estimate = _estimate(cells, path, line)
-        except StopIteration:
-            return
-        except InputError as error:
-            if not _is_torn(path, error.line):
-                raise
-            _log.warning("%s: the last line is torn and left out", path)
-            return
-        yield estimate
+    return without_torn_end((_estimate(cells, path, line) for line, cells in read_csv(path, COLUMNS)), path)
 
 
 def read_truth(path: Path | str) -> list[TruthPose]:
@@ -68,14 +53,6 @@ def read_truth(path: Path | str) -> list[TruthPose]:
             frame, stamp_ns = integer_cell(cells, "frame", path, line), integer_cell(cells, "stamp_ns", path, line)
             truth.append(TruthPose(frame=frame, stamp_ns=stamp_ns, T_camera_target=T))
     return truth
-
-
-def _is_torn(path: Path, line: int | None) -> bool:
-    """Whether this is the last line and does not end with a line feed (or its bytes are no text)."""
-    if line is None or line == 1:
-        return False
-    data = path.read_bytes()
-    return not data.endswith(b"\n") and data.count(b"\n") + 1 == line
 
 
 def _pose(cells: Mapping[str, str], path: Path, line: int) -> Matrix4 | None:

@@ -19,7 +19,7 @@ from fairlead.opencv.drawing import (
 )
 from fairlead.opencv.filters import warp_affine
 from fairlead.opencv.flow import carry_points
-from fairlead.opencv.images import GreyImage, Image, decode_image, grey, image_size, read_image
+from fairlead.opencv.images import GreyImage, Image, coloured, decode_image, grey, image_size, read_image
 from fairlead.opencv.markers import (
     FoundCorners,
     charuco_corners,
@@ -44,6 +44,7 @@ __all__ = [
     "carry_points",
     "charuco_corners",
     "chessboard_corners",
+    "coloured",
     "contours",
     "decode_image",
     "draw_lines",

@@ -58,9 +58,19 @@ def grey(image: np.ndarray) -> GreyImage:
     """
     import cv2
 
+    _check(image)
+    return image if image.ndim == 2 else np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY))
+
+
+def coloured(image: np.ndarray) -> Image:
+    """The same image with three channels, as a grey file is read. Raises ValueError as `grey`."""
+    _check(image)
+    return image if image.ndim == 3 else np.repeat(image[:, :, None], 3, axis=2)
+
+
+def _check(image: np.ndarray) -> None:
     if image.dtype != np.uint8 or image.size == 0 or (image.ndim != 2 and image.shape[2:] != (3,)):
         raise ValueError(f"image: expected 8 bits, (h, w) or (h, w, 3), got {image.dtype} {image.shape}")
-    return image if image.ndim == 2 else np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY))
 
 
 def _checked(path: Path) -> tuple[bytes, tuple[int, int]]:

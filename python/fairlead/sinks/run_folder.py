@@ -37,6 +37,7 @@ class RunFolder:
         self._path = path
         self._record = record
         self._in_doubt = 0
+        self._observations_dropped = 0
         self._sinks: list[Sink] = []
         self._outcome_sinks: list[OutcomeSink] = []
         self._stack = ExitStack()
@@ -91,6 +92,7 @@ class RunFolder:
     def _finish(self, estimate: Estimate, timing: Timing) -> None:
         self._timing.write(timing)
         self._in_doubt += estimate.in_doubt
+        self._observations_dropped += estimate.n_dropped
         with_pose = self._record.frames_with_pose + estimate.ok
         self._record = dataclasses.replace(self._record, frames=self._record.frames + 1, frames_with_pose=with_pose)
 
@@ -111,6 +113,11 @@ class RunFolder:
     def frames_in_doubt(self) -> int:
         """Frames with a pose in which the data contradict what was told."""
         return self._in_doubt
+
+    @property
+    def observations_dropped(self) -> int:
+        """Observations that the estimator could not use."""
+        return self._observations_dropped
 
     def __enter__(self) -> "RunFolder":
         return self

@@ -4,12 +4,16 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from fairlead import _core
-from fairlead.tracker.core import LandmarkIndex, TrackerOptions, core_camera, to_estimate, with_motion
+from fairlead.tracker.core import LandmarkIndex, TrackerOptions, core_camera, options_for, to_estimate
 from fairlead.types import AttitudeReading, Camera, Estimate, RangeReading, Target, View
+from fairlead.types.checks import instance
+
+_Record = TypeVar("_Record", View, RangeReading, AttitudeReading)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,9 +71,10 @@ def refine(
 
     Raises ValueError as `Tracker` does.
     """
-    views, ranges = tuple(views), tuple(ranges)
+    options = options_for(target, camera, options)
+    views, ranges = _all(views, View, "views"), _all(ranges, RangeReading, "ranges")
+    attitudes = _all(attitudes, AttitudeReading, "attitudes")
     index = LandmarkIndex(target.landmarks)
-    options = with_motion(options or TrackerOptions(), target)
     if any(reading.landmark is None for reading in ranges):
         options = replace(options, range_to_origin=True)
     estimates, X, P, noise, prior, believed, cost, iterations, converged, used, refused, bias, sigma = _core.refine(
@@ -98,6 +103,15 @@ def refine(
         range_bias_m=bias,
         range_bias_sigma_m=sigma,
     )
+
+
+def _all(records: Iterable[_Record], kind: type[_Record], name: str) -> tuple[_Record, ...]:
+    """The records, all of this class. Raises ValueError."""
+    instance(records, Iterable, name)
+    records = tuple(records)
+    for record in records:
+        instance(record, kind, name)
+    return records
 
 
 def _readings(

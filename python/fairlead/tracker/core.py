@@ -3,6 +3,7 @@
 """What the wrappers of the core share: options, names to numbers, records."""
 
 import difflib
+import reprlib
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from fairlead import _core
 from fairlead.types import Camera, Estimate, Target
+from fairlead.types.checks import instance
 
 _D = _core.TrackerOptions()
 
@@ -55,11 +57,35 @@ class TrackerOptions:
     """Of the consensus search."""
 
     def to_core(self) -> _core.TrackerOptions:
-        """The same options as the core's record."""
+        """The same options as the core's record. Raises ValueError for a value of another type, naming the option."""
         options = _core.TrackerOptions()
         for name, value in asdict(self).items():
-            setattr(options, name, value)
+            try:
+                setattr(options, name, value)
+            except TypeError:
+                expected = _expected(getattr(_D, name), value)
+                raise ValueError(f"{name}: got {reprlib.repr(value)}, expected {expected}") from None
         return options
+
+    def check(self) -> None:
+        """Raises ValueError for an option out of range, as `Tracker` does: the ranges are the core's alone."""
+        _core.Tracker(core_camera(_ANY_CAMERA), np.eye(4, 3), np.eye(12), self.to_core())
+
+
+def _expected(default: object, value: object) -> str:
+    """What an option takes, in words; `value` is what the core did not take."""
+    if isinstance(default, bool):
+        return "true or false"
+    if isinstance(default, str):
+        return "text"
+    if isinstance(default, float):
+        return "a number"
+    if isinstance(value, int):
+        return "a whole number >= 0" if value < 0 else "a smaller whole number"
+    return "a whole number"
+
+
+_ANY_CAMERA = Camera(name="any", width=1, height=1, model="pinhole", K=np.eye(3), distortion=np.empty(0))
 
 
 def core_camera(camera: Camera) -> _core.Camera:
@@ -87,8 +113,15 @@ class LandmarkIndex:
         return _core.ORIGIN if name is None else int(self([name])[0])
 
 
-def with_motion(options: TrackerOptions, target: Target) -> TrackerOptions:
-    """The target's own motion holds where the options say nothing."""
+def options_for(target: Target, camera: Camera, options: TrackerOptions | None) -> TrackerOptions:
+    """The options, or the defaults; the target's own motion holds where they say nothing.
+
+    Raises ValueError if one of the three is something else.
+    """
+    options = TrackerOptions() if options is None else options
+    instance(target, Target, "target")
+    instance(camera, Camera, "camera")
+    instance(options, TrackerOptions, "options")
     motion = target.motion
     if motion is None or options.motion != "none":
         return options
@@ -100,7 +133,7 @@ CoreEstimate = tuple[int, str, str, np.ndarray, np.ndarray, int, int, float, flo
 
 def to_estimate(frame: int, core: CoreEstimate, landmarks: Sequence[str]) -> Estimate:
     """The core's answer as the package's record."""
-    stamp_ns, status, reason, T, covariance, n_inliers, _, rms, information, resets, inliers = core
+    stamp_ns, status, reason, T, covariance, n_inliers, n_dropped, rms, information, resets, inliers = core
     return Estimate(
         frame=frame,
         stamp_ns=stamp_ns,
@@ -113,4 +146,5 @@ def to_estimate(frame: int, core: CoreEstimate, landmarks: Sequence[str]) -> Est
         information_gained=information,
         reset_counter=resets,
         inliers=tuple(landmarks[j] for j in inliers),
+        n_dropped=n_dropped,
     )

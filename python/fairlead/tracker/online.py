@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fairlead import _core
-from fairlead.tracker.core import LandmarkIndex, TrackerOptions, core_camera, to_estimate, with_motion
-from fairlead.types import Camera, Estimate, Matrix3, Matrix4, Matrix6, Target, View
+from fairlead.tracker.core import LandmarkIndex, TrackerOptions, core_camera, options_for, to_estimate
+from fairlead.types import AttitudeReading, Camera, Estimate, Matrix3, Matrix4, Matrix6, RangeReading, Target, View
+from fairlead.types.checks import frozen_array, instance, integer, number
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -39,9 +40,9 @@ class Tracker:
     """
 
     def __init__(self, target: Target, camera: Camera, options: TrackerOptions | None = None) -> None:
+        options = options_for(target, camera, options)
         self._target = target
         self._index = LandmarkIndex(target.landmarks)
-        options = with_motion(options or TrackerOptions(), target)
         self._core = _core.Tracker(core_camera(camera), target.positions, target.covariance, options.to_core())
         for distance in target.distances:
             a, b = self._index(distance.between)
@@ -54,27 +55,32 @@ class Tracker:
         docs/range.md. Raises ValueError for an unknown landmark, numbers that are not positive, or a range to the
         origin without `TrackerOptions.range_to_origin`.
         """
-        self._core.add_range(stamp_ns, range_m, sigma_m, self._index.point(landmark))
+        reading = RangeReading(stamp_ns=stamp_ns, range_m=range_m, sigma_m=sigma_m, landmark=landmark)
+        self._core.add_range(reading.stamp_ns, reading.range_m, reading.sigma_m, self._index.point(landmark))
 
     def add_attitude(self, stamp_ns: int, R_world_camera: Matrix3, sigma_rad: float) -> None:
         """The camera's attitude in a world-aligned frame at a view's stamp, for motion `world`, docs/motion.md.
 
         Raises ValueError unless it is a rotation.
         """
-        self._core.add_attitude(stamp_ns, R_world_camera, sigma_rad)
+        reading = AttitudeReading(stamp_ns=stamp_ns, R_world_camera=R_world_camera, sigma_rad=sigma_rad)
+        self._core.add_attitude(reading.stamp_ns, reading.R_world_camera, reading.sigma_rad)
 
     def add_pose(self, stamp_ns: int, T_camera_target: Matrix4, covariance: Matrix6) -> None:
         """Where the target is thought to be while it is not tracked: the search of the next view starts there.
 
         Raises ValueError unless it is a rigid motion with a positive definite covariance of xi in T Exp(xi).
         """
-        self._core.add_pose(stamp_ns, np.ascontiguousarray(T_camera_target)[None], covariance)
+        T = frozen_array(T_camera_target, (4, 4), "pose T_camera_target")
+        P = frozen_array(covariance, (6, 6), "pose covariance")
+        self._core.add_pose(integer(stamp_ns, "pose stamp_ns"), T[None], P)
 
     def update(self, view: View) -> Estimate:
         """Take in one view; bad data end in the status, never in an exception.
 
-        Raises ValueError only if the view names a landmark that the target does not have.
+        Raises ValueError only if it is no View, or names a landmark that the target does not have.
         """
+        instance(view, View, "view")
         core = self._core.update(view.stamp_ns, self._index(view.landmarks), view.pixels, view.covariances)
         return to_estimate(view.frame, core, self._target.landmarks)
 
@@ -85,7 +91,7 @@ class Tracker:
         docs/estimator.md eq. (20). Status `coasting`; not ok where nothing is tracked, the stamp is before the last
         view's, or further ahead than `TrackerOptions.coast_limit_s`.
         """
-        return to_estimate(-1, self._core.predict(stamp_ns), self._target.landmarks)
+        return to_estimate(-1, self._core.predict(integer(stamp_ns, "stamp_ns")), self._target.landmarks)
 
     @property
     def model(self) -> Target:
@@ -99,7 +105,8 @@ class Tracker:
 
     def predicted_gain(self, T_camera_target: Matrix4, sigma_px: float = 1.0) -> float:
         """What a view of all landmarks from this pose would add to the information about the model [nats], eq. (4)."""
-        return self._core.predicted_gain(np.ascontiguousarray(T_camera_target)[None], sigma_px)
+        T = frozen_array(T_camera_target, (4, 4), "T_camera_target")
+        return self._core.predicted_gain(T[None], number(sigma_px, "sigma_px"))
 
     @property
     def ranges_believed(self) -> int:

@@ -14,11 +14,22 @@ RIGID_TOLERANCE = 1e-6
 
 
 def frozen_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> np.ndarray:
-    """Copy to a read-only float64 array of this shape; ValueError names the field otherwise."""
+    """Copy to a read-only float64 array of this shape; an empty list has any shape without elements.
+
+    Raises ValueError, naming the field, for another shape, and for what would lose its mask or imaginary part.
+    """
+    came = type(values).__name__
     try:
-        array = np.array(values, dtype=np.float64)
+        given = np.asarray(values)
+        if given.dtype.kind == "c":
+            came = "complex numbers"
+        if given.dtype.kind == "c" or np.ma.isMaskedArray(values):
+            raise TypeError
+        array = np.array(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}: expected numbers of shape {shape}, got {type(values).__name__}") from error
+        raise ValueError(f"{name}: expected numbers of shape {shape}, got {came}") from error
+    if array.shape == (0,) and shape[0] == 0:
+        array = array.reshape(shape)
     if array.shape != shape:
         raise ValueError(f"{name}: expected shape {shape}, got {array.shape}")
     array.setflags(write=False)
@@ -34,6 +45,20 @@ def integer(value: SupportsIndex, name: str) -> int:
     if not -(2**63) <= whole < 2**63:
         raise ValueError(f"{name}: expected a 64-bit integer, got {whole}")
     return whole
+
+
+def number(value: float, name: str) -> float:
+    """A number, which need not be finite."""
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: expected a number, got {value!r}") from error
+
+
+def instance(value: object, kind: type, name: str) -> None:
+    """An object of this class."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name}: expected {kind.__name__}, got {type(value).__name__}")
 
 
 def names(values: tuple[str, ...], name: str) -> tuple[str, ...]:

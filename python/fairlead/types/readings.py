@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fairlead.types.arrays import Matrix3
-from fairlead.types.checks import assign, frozen_array, integer, is_rigid
+from fairlead.types.checks import assign, frozen_array, integer, is_rigid, number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +26,8 @@ class RangeReading:
 
     def __post_init__(self) -> None:
         stamp_ns = integer(self.stamp_ns, "range stamp_ns")
-        assign(self, stamp_ns=stamp_ns, range_m=float(self.range_m), sigma_m=float(self.sigma_m))
+        range_m, sigma_m = number(self.range_m, "range range_m"), number(self.sigma_m, "range sigma_m")
+        assign(self, stamp_ns=stamp_ns, range_m=range_m, sigma_m=sigma_m)
         if self.landmark is not None and not self.landmark:
             raise ValueError("range landmark: expected a name, or None for the target's origin, got an empty text")
 
@@ -52,4 +53,4 @@ class AttitudeReading:
         if not is_rigid(T):
             raise ValueError(f"attitude R_world_camera: expected a rotation, got {R.tolist()}")
         stamp_ns = integer(self.stamp_ns, "attitude stamp_ns")
-        assign(self, stamp_ns=stamp_ns, R_world_camera=R, sigma_rad=float(self.sigma_rad))
+        assign(self, stamp_ns=stamp_ns, R_world_camera=R, sigma_rad=number(self.sigma_rad, "attitude sigma_rad"))

@@ -59,9 +59,11 @@ class Estimate:
     reset_counter: int
     """Increments when the pose jumps."""
     inliers: tuple[str, ...]
+    n_dropped: int = 0
+    """Observations that no estimator can use: not finite, no positive definite covariance, or the landmark twice."""
 
     def __post_init__(self) -> None:
-        for name in ("frame", "stamp_ns", "n_inliers", "reset_counter"):
+        for name in ("frame", "stamp_ns", "n_inliers", "reset_counter", "n_dropped"):
             assign(self, **{name: integer(getattr(self, name), f"estimate {name}")})
         choice(self.status, get_args(Status), "estimate status")
         T = frozen_array(self.T_camera_target, (4, 4), "estimate T_camera_target")

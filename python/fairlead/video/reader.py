@@ -31,6 +31,10 @@ _LIVE = {"fflags": "nobuffer", "flags": "low_delay", "analyzeduration": "500000"
 """Begin at once, keep nothing back."""
 
 
+_TEXT_ART = ("ansi", "bintext", "idf", "xbin")
+"""Codecs with which FFmpeg draws the letters of a text file."""
+
+
 def open_video(source: Path | str, *, named: str | None = None) -> Any:
     """Open a file, or a network address if it is text; `named` stands for it in messages. Raises InputError."""
     import av
@@ -48,6 +52,9 @@ def open_video(source: Path | str, *, named: str | None = None) -> Any:
     if not container.streams.video:
         container.close()
         raise InputError(name, "holds no video")
+    if container.streams.video[0].codec_context.name in _TEXT_ART:
+        container.close()
+        raise InputError(name, "is text; expected a video")
     # Threads over frames hold back as many images as there are threads.
     container.streams.video[0].thread_type = "SLICE" if live else "AUTO"
     return container

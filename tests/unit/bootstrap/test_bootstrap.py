@@ -165,3 +165,12 @@ def test_the_command_makes_a_target_that_is_tracked(tmp_path: Path, capsys: pyte
     assert "--tag-size-m or --distance" in capsys.readouterr().err
     assert main([*made, "--distance", "tag0_tl", "nobody", "0.1"]) == 2
     assert "nobody" in capsys.readouterr().err
+    (tmp_path / "folder").mkdir()
+    before = sorted(tmp_path.rglob("*"))
+    for name, message in (("pen.npz", "expected one that ends in .toml"), ("folder", "is a folder")):
+        assert main([*made[:-1], str(tmp_path / name), "--tag-size-m", "0.08"]) == 2
+        error = capsys.readouterr().err
+        assert f"{tmp_path / name}: " in error
+        assert message in error
+        assert error.count("\n") == 1
+    assert sorted(tmp_path.rglob("*")) == before

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fairlead import geometry
+from fairlead import geometry, opencv
 from fairlead.detect import detector_from_spec
 from fairlead.detect.network import NetworkDetector
 from fairlead.io.errors import InputError
 from fairlead.io.network_card import Calibration, NetworkCard, NetworkInput
+from fairlead.opencv.filters import write_image
 from fairlead.tracker import Tracker
 from fairlead.types import Matrix4, Target, View
 from tests.unit.detect.networks import COLOURS, NAMES, heat_network, heatmap_network, saved, simcc_network
@@ -61,6 +62,20 @@ def test_it_is_found_anywhere_through_a_lens(
     view = detector.detect(picture.image, 4, 17)
     assert (view.frame, view.stamp_ns, len(view.landmarks)) == (4, 17, len(NAMES))
     assert worst(view, picture.pixels) < 0.3  # half a pixel of the image, or of a crop of 256, is more
+
+
+def test_a_grey_image_is_looked_at_as_a_grey_file_is(tmp_path: Path) -> None:
+    camera = wide_camera()
+    grey = opencv.grey(draw(camera, seen_from(60.0)).image)
+    write_image(tmp_path / "grey.png", grey)
+    read = opencv.read_image(tmp_path / "grey.png")
+    path = heat(tmp_path)
+    views = [NetworkDetector(path, spots_target(), camera).detect(image, 0, 0) for image in (grey, read)]
+    assert views[0].landmarks == views[1].landmarks
+    np.testing.assert_array_equal(views[0].pixels, views[1].pixels)
+    np.testing.assert_array_equal(opencv.coloured(grey), read)
+    with pytest.raises(ValueError, match=r"image: expected 8 bits, \(h, w\) or \(h, w, 3\), got float64"):
+        opencv.coloured(np.zeros((4, 4)))
 
 
 def test_following_looks_once_and_finds_what_acquiring_finds(tmp_path: Path) -> None:
