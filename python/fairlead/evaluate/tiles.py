@@ -17,7 +17,7 @@ _FIRST = (
 )
 """Metrics by how much a reader wants them; the first six that the run has are shown."""
 _GIVEN = "landmarks_before_m"
-_PREFERRED = ("map", "refine", "window", "epnp")
+_OURS = ("map", "refine")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +38,7 @@ def main_method(evaluations: Mapping[str, Evaluation]) -> str:
     """The method that the report is about: ours if it is there, else the first. Raises ValueError for none."""
     if not evaluations:
         raise ValueError("report: expected at least one run, got none")
-    return next((name for name in _PREFERRED if name in evaluations), next(iter(evaluations)))
+    return next((name for name in _OURS if name in evaluations), next(iter(evaluations)))
 
 
 def tiles(evaluations: Mapping[str, Evaluation]) -> tuple[Tile, ...]:
