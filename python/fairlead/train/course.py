@@ -140,6 +140,7 @@ def follow(course: Course, learned: Crops, held_out: Crops, *, progress: Progres
         torch.set_num_threads(course.threads)
     course.output.mkdir(parents=True, exist_ok=True)
     last = course.output / LAST
+    torch.manual_seed(course.seed)  # of the weights that the lesson begins with
     lesson = Lesson(course.network, learned.landmarks, course.steps, rate=course.rate, size=course.size)
     lines: list[str] = []
     if course.start is not None and not last.exists():
