@@ -5,9 +5,10 @@
 import torch
 from torch import Tensor, nn
 
+from fairlead.train.crops import SCALE
 from fairlead.train.networks.depthwise import DepthwiseConv2d
 
-FAINT = 1.0 / 58.0
+FAINT = 1.0 / SCALE
 """Contrast that is as good as none, one grey level: what is fainter stays faint."""
 
 
