@@ -11,6 +11,16 @@ namespace {
 
 using namespace fairlead;
 
+/// N(X0, P0) as the peers have it: of a model without a size of its own (docs/estimator.md eq. (2) with x0 = 0).
+window::LandmarkPrior plain_prior(const std::vector<Vec3>& X0, double sigma_m) {
+    const Eigen::Index rows = 3 * static_cast<Eigen::Index>(X0.size());
+    window::LandmarkPrior prior = window::make_prior(X0, sigma_m * sigma_m * MatX::Identity(rows, rows));
+    prior.outline.setZero();
+    prior.pull.setZero();
+    prior.scale_information = 1.0;
+    return prior;
+}
+
 class Core {
   public:
     void prepare(const speed::ProblemFile& file) {
@@ -19,8 +29,7 @@ class Core {
         start_.camera = {.width = 1024, .height = 1024, .fx = file.fx, .fy = file.fy, .cx = file.cx, .cy = file.cy};
         start_.X = file.X0;
         start_.loss.threshold = std::numeric_limits<double>::infinity();
-        const Eigen::Index rows = 3 * static_cast<Eigen::Index>(n);
-        start_.prior = window::make_prior(file.X0, std::pow(file.prior_sigma_m, 2) * MatX::Identity(rows, rows));
+        start_.prior = plain_prior(file.X0, file.prior_sigma_m);
         const Mat22 information = Mat22::Identity() / (file.sigma_px * file.sigma_px);
         for (std::size_t k = 0; k < file.R.size(); ++k) {
             window::ViewBlock view(n);

@@ -15,6 +15,7 @@ namespace {
 constexpr int kMeasurements = 12;       // at most, of the factors of noise and prior
 constexpr double kFactorChange = 0.01;  // relative change of the factors that counts as settled
 constexpr int kSecondLooks = 3;         // rounds in which views are tried from other poses
+constexpr double kLeastShare = 1e-3;    // of a view that is as likely to have another pose
 
 }  // namespace
 
@@ -70,13 +71,19 @@ void Batch::update_blocks() {
     }
 }
 
-/// Of detections that err alike, docs/motion.md eq. (12).
+/// How much a view may teach of the model: the squared difference of the probabilities of its two poses,
+/// docs/estimator.md eq. (21). Taken at its likelier pose, it would bend the model towards whatever the noise made so.
+double decided(const Candidate& candidate) {
+    return candidate.twin ? std::max(std::pow(std::tanh(0.5 * candidate.twin_nats), 2), kLeastShare) : 1.0;
+}
+
+/// Of detections that err alike, docs/motion.md eq. (12), and of views that may have another pose.
 void Batch::share_information() {
     Shares shares(options_);
     for (const Candidate* candidate : in_time()) {
         if (candidate->view < 0) continue;
         window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate->view)];
-        view.share = shares.of(outlook(view.stamp_ns, view.state.T_camera_target, points()));
+        view.share = decided(*candidate) * shares.of(outlook(view.stamp_ns, view.state.T_camera_target, points()));
         shares.take();
     }
 }
@@ -118,13 +125,12 @@ void Batch::graduate(double mu) {
         if (!solve_widened(mu, 6)) return;
     for (int round = 0; round < kMeasurements; ++round) {
         if (!solve_widened(1.0, 50) || !window::assemble_data(problem_, 0.0, workspace_)) return;
-        H_data_ = workspace_.S;
-        g_data_ = workspace_.g;
+        data_ = {workspace_.S, workspace_.g, problem_.X};
         measure_structure();
         const double noise = problem_.noise_factor;
         const double prior = problem_.prior_factors.believed;
         window::update_noise_factor(problem_, determined_);
-        window::update_prior_factors(problem_, H_data_, g_data_, problem_.X, workspace_);
+        window::update_prior_factors(problem_, data_, workspace_);
         const double change = std::max(std::abs(problem_.noise_factor / noise - 1.0),
                                        std::abs(problem_.prior_factors.believed / prior - 1.0));
         if (change < kFactorChange) return;

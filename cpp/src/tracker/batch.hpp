@@ -30,6 +30,8 @@ struct Candidate {
     std::optional<Mat66> whole;  ///< covariance of a pose that the whole view was asked for
 };
 
+[[nodiscard]] double decided(const Candidate& candidate);
+
 /// All views of a flight and their joint solution, docs/estimator.md section 5.
 class Batch {
   public:
@@ -47,11 +49,12 @@ class Batch {
     void add_attitudes(std::span<const BatchReadings::Attitude> attitudes);
     [[nodiscard]] std::vector<Candidate*> in_time();
 
-    [[nodiscard]] std::optional<SE3> neighbour(const Candidate& candidate) const;
+    [[nodiscard]] std::optional<Prediction> neighbour(const Candidate& candidate) const;
     bool start_missing_views();
     bool take_second_look();
+    double doubted_cost(const Candidate& candidate, const SE3& T);
     void locate_by_whole_views();
-    void locate(Candidate& candidate, window::ViewBlock& view, const std::vector<Vec3>& X_data);
+    void locate(Candidate& candidate, window::ViewBlock& view);
     double widest_loss();
     bool solve_widened(double mu, int max_iterations);
     void graduate(double mu);
@@ -83,8 +86,8 @@ class Batch {
     TrackerOptions options_;
     window::Problem problem_;
     window::Workspace workspace_;
-    MatX Sigma_, H_data_;
-    VecX g_data_;
+    window::Quadratic data_;  ///< of all views
+    MatX Sigma_;
     std::vector<Mat33> blocks_;
     std::vector<Candidate> candidates_;
     std::vector<Observation> scratch_;

@@ -15,21 +15,17 @@ constexpr double kOtherPose = 0.05;  // [rad] by which another minimum differs
 constexpr int kIterations = 8;       // of a view with the model
 constexpr double kSettled = 1e-3;    // [sigma^2] step that ends them
 
-Eigen::Map<const VecX> stacked(const std::vector<Vec3>& X) {
-    return {X.front().data(), 3 * static_cast<Eigen::Index>(X.size())};
-}
-
 }  // namespace
 
 /// The pose of the view that is nearest in time to this one, of those that have one.
-std::optional<SE3> Batch::neighbour(const Candidate& candidate) const {
-    std::optional<SE3> pose;
+std::optional<Prediction> Batch::neighbour(const Candidate& candidate) const {
+    std::optional<Prediction> pose;
     std::int64_t nearest = 0;
     for (const Candidate& other : candidates_) {
         const std::int64_t apart = std::abs(other.stamp_ns - candidate.stamp_ns);
         if (other.view < 0 || (pose && apart >= nearest)) continue;
         nearest = apart;
-        pose = problem_.views[static_cast<std::size_t>(other.view)].state.T_camera_target;
+        pose = {problem_.views[static_cast<std::size_t>(other.view)].state.T_camera_target, Mat66::Identity()};
     }
     return pose;
 }
@@ -44,7 +40,7 @@ bool Batch::start_missing_views() {
         if (candidate.view >= 0) continue;
         TrackerOptions options = options_;
         options.seed += k;
-        const std::optional<SE3> predicted = solved ? neighbour(candidate) : std::nullopt;
+        const std::optional<Prediction> predicted = solved ? neighbour(candidate) : std::nullopt;
         const StartPose start = find_start(problem_.camera, model(), candidate.observations, predicted,
                                            problem_.noise_factor, options, scratch_);
         candidate.reason = start.reason;
@@ -62,6 +58,19 @@ bool Batch::start_missing_views() {
     return added;
 }
 
+/// Of a pose, whatever the model may be within its covariance.
+double Batch::doubted_cost(const Candidate& candidate, const SE3& T) {
+    inflate(problem_.camera, model(), T, problem_.noise_factor, candidate.observations, scratch_);
+    double cost = 0.0;
+    for (const Observation& o : scratch_) {
+        Vec2 z;
+        if (!problem_.camera.project(T * problem_.X[static_cast<std::size_t>(o.landmark)], z)) continue;
+        const Vec2 r = z - o.z;
+        cost += Loss{options_.loss_threshold}.rho(r.dot(o.covariance.inverse() * r));
+    }
+    return cost;
+}
+
 /// Tries every view from its mirror image and from a fresh consensus on the present model; true if one of them costs
 /// less. The best of the others is kept: it may be the right one.
 bool Batch::take_second_look() {
@@ -77,6 +86,7 @@ bool Batch::take_second_look() {
                                            problem_.noise_factor, options, scratch_);
         const SE3 starts[] = {pnp::mirrored(T, problem_.X, candidate.observations), fresh.poses.best.T_camera_target,
                               fresh.poses.other.T_camera_target};
+        const double decided_before = decided(candidate);
         candidate.twin.reset();
         candidate.twin_nats = options_.ambiguity_log_odds;
         for (const SE3& start : starts) {
@@ -88,11 +98,12 @@ bool Batch::take_second_look() {
                 std::swap(pose, T);
                 moved = true;
             }
-            const double nats = 0.5 * (cost(view, pose) - cost(view, T)) / (problem_.noise_factor * view.share);
+            const double nats = 0.5 * (doubted_cost(candidate, pose) - doubted_cost(candidate, T));
             if (nats >= candidate.twin_nats || difference(pose, T).tail<3>().norm() < kOtherPose) continue;
             candidate.twin = pose;
             candidate.twin_nats = std::max(nats, 0.0);
         }
+        if (std::abs(decided(candidate) - decided_before) > 0.1) moved = true;
     }
     return moved;
 }
@@ -102,21 +113,19 @@ bool Batch::take_second_look() {
 /// those errors already and is put back.
 void Batch::locate_by_whole_views() {
     if (!window::linearise(problem_) || !window::assemble_data(problem_, 0.0, workspace_)) return;
-    H_data_ = workspace_.S;
-    g_data_ = workspace_.g;
-    const std::vector<Vec3> X = problem_.X;
+    data_ = {workspace_.S, workspace_.g, problem_.X};
     const double cautious = std::exchange(problem_.prior_factors.believed, problem_.prior_factors.likely);
     for (Candidate& candidate : candidates_) {
         if (candidate.view < 0) continue;
         window::ViewBlock& view = problem_.views[static_cast<std::size_t>(candidate.view)];
-        if (view.share < 1.0) locate(candidate, view, X);
-        problem_.X = X;
+        if (view.share < 1.0) locate(candidate, view);
+        problem_.X = data_.X;
     }
     problem_.prior_factors.believed = cautious;
 }
 
-/// Gauss-Newton on one whole view and the model, everything else a quadratic about X_data.
-void Batch::locate(Candidate& candidate, window::ViewBlock& view, const std::vector<Vec3>& X_data) {
+/// Gauss-Newton on one whole view and the model, everything else a quadratic.
+void Batch::locate(Candidate& candidate, window::ViewBlock& view) {
     const double told = std::exchange(view.share, 1.0);
     const SE3 before = view.state.T_camera_target;
     bool ok = true;
@@ -124,10 +133,7 @@ void Batch::locate(Candidate& candidate, window::ViewBlock& view, const std::vec
         ok = window::linearise(problem_.camera, problem_.X, problem_.told_loss(), problem_.noise_factor, view) &&
              window::factor_state(0.0, view);
         if (!ok) break;
-        workspace_.S = H_data_;
-        workspace_.step = stacked(problem_.X) - stacked(X_data);
-        workspace_.g = g_data_;
-        workspace_.g.noalias() += H_data_.selfadjointView<Eigen::Lower>() * workspace_.step;
+        window::assemble(data_, problem_.X, workspace_);
         workspace_.eliminator.add(view, problem_.X, workspace_.S, workspace_.g);
         workspace_.eliminator.flush(workspace_.S);
         window::scale_and_add_prior(problem_, problem_.X, workspace_);

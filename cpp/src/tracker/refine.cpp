@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "batch.hpp"
+#include "fairlead/tracker/hypotheses.hpp"
 #include "fairlead/tracker/readings.hpp"
 #include "fairlead/window/gauge_curvature.hpp"
 
@@ -40,8 +41,7 @@ Estimate Batch::estimate(const Candidate& candidate, std::vector<int>& inliers) 
     e.T_camera_target = view.state.T_camera_target;
     e.covariance = covariance(candidate);
     if (candidate.twin && candidate.on_path < 0) {
-        const Vec6 way = difference(e.T_camera_target, *candidate.twin);
-        e.covariance += way * way.transpose() / (1.0 + std::exp(candidate.twin_nats));
+        e.covariance = mixed(e.covariance, e.T_camera_target, *candidate.twin, candidate.twin_nats);
         if (e.reason == Reason::none) e.reason = Reason::ambiguous;
     }
     double squares = 0.0;

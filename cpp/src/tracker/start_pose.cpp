@@ -13,6 +13,9 @@ namespace fairlead {
 namespace {
 
 constexpr double kPredictionShare = 0.7;   // inliers that make a prediction good enough
+constexpr double kFlat = 0.1;              // flatness below which a target has two poses in any view
+constexpr double kMaxSurprise = 18.0;      // [-] squared distance from a prediction, which may be wrong
+constexpr double kSamePose = 1e-3;         // [rad]
 constexpr double kMaxChance = 0.1;         // consensus sets that chance may be expected to offer
 constexpr double kMaxRotationSigma = 1.0;  // [rad] a pose less certain than this is no pose
 constexpr double kMaxRangeSigma = 0.5;     // [-] of the range
@@ -62,6 +65,26 @@ bool well_determined(const pnp::RefineResult& pose) noexcept {
     return rotation < kMaxRotationSigma && position < kMaxRangeSigma * pose.T_camera_target.t.norm();
 }
 
+/// The other pose of a flat target too, less likely the further the prediction is from it: where the two were one, the
+/// wrong one may have been followed since.
+void add_mirrored(const UncertainModel& model, std::span<const Observation> observations, const Camera& camera,
+                  const Loss& loss, const Prediction& predicted, StartPose& start) noexcept {
+    const Eigen::LLT<Mat66> llt(predicted.covariance);
+    const auto surprise = [&](const SE3& T) {
+        const Vec6 xi = difference(predicted.T_camera_target, T);
+        return std::min(xi.dot(llt.solve(xi)), kMaxSurprise);
+    };
+    const pnp::RefineResult followed = start.poses.best;
+    start.poses = pnp::pose_pair(followed.T_camera_target, model.X, observations, camera, loss);
+    auto& [best, other, distinct] = start.poses;
+    if (!distinct) return;
+    best.cost += surprise(best.T_camera_target);
+    other.cost += surprise(other.T_camera_target);
+    if (other.cost < best.cost) std::swap(best, other);
+    const double turn = difference(followed.T_camera_target, best.T_camera_target).tail<3>().norm();
+    start.from_prediction = turn < kSamePose;
+}
+
 }  // namespace
 
 void inflate(const Camera& camera, const UncertainModel& model, const SE3& T_camera_target, double noise_factor,
@@ -78,17 +101,20 @@ void inflate(const Camera& camera, const UncertainModel& model, const SE3& T_cam
 }
 
 StartPose find_start(const Camera& camera, const UncertainModel& model, std::span<const Observation> observations,
-                     const std::optional<SE3>& predicted, double noise_factor, const TrackerOptions& options,
+                     const std::optional<Prediction>& predicted, double noise_factor, const TrackerOptions& options,
                      std::vector<Observation>& scratch) noexcept {
     StartPose start;
     const Loss loss{options.loss_threshold};
     const int n = static_cast<int>(observations.size());
     if (n < 4) return start.reason = Reason::too_few, start;
-    if (pnp::spread(model.X, observations).straightness < 1e-6) return start.reason = Reason::degenerate, start;
+    const pnp::Spread spread = pnp::spread(model.X, observations);
+    if (spread.straightness < 1e-6) return start.reason = Reason::degenerate, start;
     if (predicted) {
-        inflate(camera, model, *predicted, noise_factor, observations, scratch);
-        start.poses.best = pnp::refine(*predicted, model.X, scratch, camera, loss);
+        inflate(camera, model, predicted->T_camera_target, noise_factor, observations, scratch);
+        start.poses.best = pnp::refine(predicted->T_camera_target, model.X, scratch, camera, loss);
         start.from_prediction = start.poses.best.ok && start.poses.best.inliers >= std::max(4.0, kPredictionShare * n);
+        if (start.from_prediction && spread.flatness < kFlat)
+            add_mirrored(model, scratch, camera, loss, *predicted, start);
     }
     if (!start.from_prediction) {
         inflate_isotropic(model, noise_factor, observations, scratch);

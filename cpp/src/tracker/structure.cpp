@@ -20,10 +20,6 @@ constexpr int kJoinIterations = 8;
 constexpr double kJoinStep = 0.01;      // squared step [sigma^2] below which the newest view is settled
 constexpr double kNonlinearity = 0.01;  // [sigma] error of the quadratic before its views are relinearised
 
-Eigen::Map<const VecX> stacked(const std::vector<Vec3>& X) {
-    return {X.front().data(), 3 * static_cast<Eigen::Index>(X.size())};
-}
-
 }  // namespace
 
 Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX& P0, const TrackerOptions& options)
@@ -48,10 +44,9 @@ Structure::Structure(const Camera& camera, std::span<const Vec3> X0, const MatX&
     problem_.loss.threshold = options.loss_threshold;
     problem_.design_effect = problem_.pose_factor = options.design_effect;
     const Eigen::Index n = 3 * static_cast<Eigen::Index>(X0.size());
-    H_data_.setZero(n, n);
-    g_data_.setZero(n);
+    data_ = {MatX::Zero(n, n), VecX::Zero(n), problem_.X};
     shift_.setZero(n);
-    X_data_ = X_window_ = problem_.X;
+    X_window_ = problem_.X;
     Yt_.setZero(n, window::ViewState::kDim);
     SigmaYt_ = Yt_;
     Sigma_ = P0;
@@ -112,10 +107,7 @@ bool Structure::newest_system(double mu) noexcept {
     if (!window::linearise(problem_.camera, problem_.X, loss, problem_.noise_factor, view) ||
         !window::factor_state(0.0, view))
         return false;
-    shift_ = stacked(problem_.X) - stacked(X_data_);
-    workspace_.S = H_data_;
-    workspace_.g = g_data_;
-    workspace_.g.noalias() += H_data_.selfadjointView<Eigen::Lower>() * shift_;
+    window::assemble(data_, problem_.X, workspace_);
     if (!on_path_) {
         workspace_.eliminator.add(view, problem_.X, workspace_.S, workspace_.g);
         workspace_.eliminator.flush(workspace_.S);

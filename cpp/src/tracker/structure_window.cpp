@@ -24,11 +24,11 @@ Eigen::Map<const VecX> stacked(const std::vector<Vec3>& X) {
 }  // namespace
 
 void Structure::absorb_newest() noexcept {
-    shift_ = stacked(problem_.X) - stacked(X_data_);
-    g_data_.noalias() += H_data_.selfadjointView<Eigen::Lower>() * shift_;
-    X_data_ = problem_.X;
-    workspace_.eliminator.add(problem_.views.back(), problem_.X, H_data_, g_data_);
-    workspace_.eliminator.flush(H_data_);
+    window::assemble(data_, problem_.X, workspace_);
+    data_.g = workspace_.g;
+    data_.X = problem_.X;
+    workspace_.eliminator.add(problem_.views.back(), problem_.X, data_.H, data_.g);
+    workspace_.eliminator.flush(data_.H);
 }
 
 /// Estimated error [sigma] of treating the window as a quadratic: relative change of the model times its whitened size.
@@ -75,13 +75,13 @@ bool Structure::relinearise(double error) noexcept {
     const bool few = problem_.views.size() <= kFewViews;
     if (!(few || stale_ || error > kNews ? solve_window(kWidest) : follow_model())) return false;
     if (!window::assemble_data(problem_, 0.0, workspace_)) return false;
-    H_data_ = workspace_.S;
-    g_data_ = workspace_.g;
+    data_.H = workspace_.S;
+    data_.g = workspace_.g;
     if (problem_.path) {  // joined view by view, not as part of the window
-        H_data_ -= problem_.path->hessian();
-        g_data_ -= problem_.path->gradient();
+        data_.H -= problem_.path->hessian();
+        data_.g -= problem_.path->gradient();
     }
-    X_data_ = X_window_ = problem_.X;
+    data_.X = X_window_ = problem_.X;
     window::scale_and_add_prior(problem_, problem_.X, workspace_);
     return workspace_.cholesky.factor(workspace_.S);
 }
@@ -96,7 +96,7 @@ MatX Structure::covariance() const {
 void Structure::judge_prior() noexcept {
     if (++fused_ < next_judgement_) return;
     next_judgement_ = fused_ + 1 + fused_ / 4;
-    window::update_prior_factors(problem_, H_data_, g_data_, X_data_, workspace_);
+    window::update_prior_factors(problem_, data_, workspace_);
 }
 
 void Structure::publish() noexcept {

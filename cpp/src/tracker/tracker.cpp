@@ -201,12 +201,12 @@ Estimate Tracker::State::update(std::int64_t stamp_ns, std::span<const Observati
         if (hypotheses.active()) return undecided(estimate);
         return fused(estimate, hypotheses.best().T_camera_target, true);
     }
-    const std::optional<SE3> predicted = following ? std::optional<SE3>(coast.pose()) : std::nullopt;
+    std::optional<Prediction> predicted;
+    if (following) predicted = Prediction{coast.pose(), coast.covariance(stamp_ns)};
     const StartPose start = find_start(camera, model(), clean, predicted, structure.noise_factor(), options, scratch);
     if (start.reason != Reason::none) return without_fresh_pose(estimate, start.reason);
     if (following && jump_is_unproven(start)) return without_fresh_pose(estimate, Reason::gated);
-    if (!start.from_prediction && hypotheses.consider(start.poses, options.ambiguity_log_odds))
-        return undecided(estimate);
+    if (hypotheses.consider(start.poses, options.ambiguity_log_odds)) return undecided(estimate);
     return fused(estimate, start.poses.best.T_camera_target, start.from_prediction);
 }
 

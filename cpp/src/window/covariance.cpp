@@ -83,16 +83,15 @@ bool contradicts_prior(const Problem& problem, double determined) noexcept {
     return problem.prior && squared_distance(*problem.prior, problem.X) > chi_square_limit(std::max(1.0, determined));
 }
 
-void update_prior_factors(Problem& problem, const MatX& H, const VecX& g, std::span<const Vec3> X,
-                          Workspace& workspace) noexcept {
+void update_prior_factors(Problem& problem, const Quadratic& data, Workspace& workspace) noexcept {
     if (!problem.prior) return;
-    const Eigen::Map<const VecX> x(X.front().data(), 3 * problem.landmarks());
+    const Eigen::Map<const VecX> x(data.X.front().data(), 3 * problem.landmarks());
     const double scale = 1.0 / problem.noise_factor;
     workspace.step = problem.prior->mean - x;
-    workspace.D = -g;
-    workspace.D.noalias() -= H.selfadjointView<Eigen::Lower>() * workspace.step;
+    workspace.D = -data.g;
+    workspace.D.noalias() -= data.H.selfadjointView<Eigen::Lower>() * workspace.step;
     workspace.D *= scale;
-    workspace.product = scale * H;
+    workspace.product = scale * data.H;
     workspace.product.diagonal() += problem.prior->aside;
     problem.prior_factors = workspace.evidence.evaluate(*problem.prior, workspace.product, workspace.D);
 }

@@ -107,13 +107,19 @@ double aside_cost(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept 
     return x.cwiseAbs2().dot(prior.aside);
 }
 
+/// With u = x - mean, e = u - (s - 1) x0 and i = x0^T p: (s - 1)^2 i + e^T P0^-1 e / s^2.
 double squared_distance(const LandmarkPrior& prior, std::span<const Vec3> X) noexcept {
     const Eigen::Map<const VecX> x(X.front().data(), prior.mean.size());
-    const double s = prior.scale(X);
-    double distance = (s - 1.0) * (s - 1.0) * prior.scale_information;
-    const auto shape = (x - prior.mean - (s - 1.0) * prior.outline) / s;
-    for (Eigen::Index c = 0; c < x.size(); ++c) distance += shape[c] * prior.information.col(c).dot(shape);
-    return distance;
+    const auto u = x - prior.mean;
+    const double grown = prior.scale(X) - 1.0;
+    const double own = grown * grown * prior.scale_information;
+    double shape = own - 2.0 * grown * prior.pull.dot(u);
+    for (Eigen::Index c = 0; c < x.size(); ++c) {
+        const Eigen::Index below = x.size() - c - 1;
+        const double off_diagonal = prior.information.col(c).tail(below).dot(u.tail(below));
+        shape += u[c] * (prior.information(c, c) * u[c] + 2.0 * off_diagonal);
+    }
+    return own + shape / ((1.0 + grown) * (1.0 + grown));
 }
 
 }  // namespace fairlead::window

@@ -59,11 +59,14 @@ void add_prior(const LandmarkPrior& prior, std::span<const Vec3> X, double facto
     const double shape = y.dot(workspace.step);
     const double own = (1.0 - 1.0 / (s * s)) / i + shape / (i * i * std::pow(s, 4));
     const double mixed = -1.0 / (i * std::pow(s, 3));
-    workspace.S += prior.information / (factor * s * s);
     workspace.g += ((s - 1.0 - shape / (i * std::pow(s, 3))) * p + y / (s * s)) / factor;
     workspace.D += prior.information.diagonal() / (factor * s * s);
-    for (Eigen::Index c = 0; c < p.size(); ++c)
-        workspace.S.col(c) += ((own * p[c] + mixed * y[c]) / factor) * p + (mixed * p[c] / factor) * y;
+    for (Eigen::Index c = 0; c < p.size(); ++c) {
+        const Eigen::Index rows = p.size() - c;
+        workspace.S.col(c).tail(rows) += prior.information.col(c).tail(rows) / (factor * s * s) +
+                                         ((own * p[c] + mixed * y[c]) / factor) * p.tail(rows) +
+                                         (mixed * p[c] / factor) * y.tail(rows);
+    }
 }
 
 }  // namespace
@@ -116,6 +119,13 @@ bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexc
         if (!views.empty()) add(views, workspace);
     if (problem.path) add(*problem.path, workspace);
     return workspace.S.diagonal().allFinite();  // no element off the diagonal is larger
+}
+
+void assemble(const Quadratic& data, std::span<const Vec3> X, Workspace& workspace) noexcept {
+    workspace.step = stacked(X) - stacked(data.X);
+    workspace.S = data.H;
+    workspace.g = data.g;
+    workspace.g.noalias() += data.H.selfadjointView<Eigen::Lower>() * workspace.step;
 }
 
 void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Workspace& workspace) noexcept {

@@ -9,7 +9,7 @@ import numpy as np
 
 from fairlead import opencv
 from fairlead.baselines.observed import Observed
-from fairlead.geometry import exp_se3, project, transform
+from fairlead.geometry import adjoint, exp_se3, project, transform
 from fairlead.types import Camera, Estimate, Matrix4, Matrix6, PixelCovariances, Points3, View
 
 NEARLY_FLAT = 0.1
@@ -77,12 +77,15 @@ def pose_covariance(
     """(sum_j J_j^T S_j^-1 J_j)^-1 with J = d pi(T Exp(xi) X) / d xi, docs/baselines.md eq. (1).
 
     The landmarks are taken as exact. None where the pose is not determined. J by central differences: relative error
-    about 1e-9, steps are in units of the landmarks' spread.
+    about 1e-9, steps are in units of the landmarks' spread, about their middle, wherever the target has its origin.
     """
+    to_middle = np.eye(4)
+    to_middle[:3, 3] = X_target.mean(axis=0)
+    X, T_camera_middle = X_target - X_target.mean(axis=0), T_camera_target @ to_middle
     scale = np.ones(6)
-    scale[:3] = np.sqrt(((X_target - X_target.mean(axis=0)) ** 2).sum(axis=1).mean())
-    moves = [T_camera_target @ exp_se3(sign * _STEP * scale * axis) for axis in np.eye(6) for sign in (1.0, -1.0)]
-    points = np.concatenate([transform(T, X_target) for T in moves])
+    scale[:3] = np.sqrt((X**2).sum(axis=1).mean())
+    moves = [T_camera_middle @ exp_se3(sign * _STEP * scale * axis) for axis in np.eye(6) for sign in (1.0, -1.0)]
+    points = np.concatenate([transform(T, X) for T in moves])
     pixels = project(camera, points).reshape(6, 2, len(X_target), 2)
     J = ((pixels[:, 0] - pixels[:, 1]) / (2.0 * _STEP)).transpose(1, 2, 0)
     H = np.einsum("nia,nij,njb->ab", J, np.linalg.inv(covariances), J)
@@ -91,7 +94,8 @@ def pose_covariance(
     values, vectors = np.linalg.eigh(H)
     if not values[0] > 1e-12 * values[-1]:
         return None
-    return scale[:, None] * ((vectors / values) @ vectors.T) * scale
+    to_target = adjoint(to_middle) * scale
+    return to_target @ ((vectors / values) @ vectors.T) @ to_target.T
 
 
 def tracked(view: View, seen: Observed, pose: SingleView, landmarks: tuple[str, ...]) -> Estimate:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fairlead.geometry import exp_so3, log_so3, project, transform, unproject
-from fairlead.types import Camera, Matrix4, Pixels, Points3, is_rigid
+from fairlead.types import Camera, Matrix4, Pixels, Points3, Vector3, is_rigid
 
 MIN_POINTS = 4
 
@@ -73,16 +73,17 @@ def refine(
     usable = _usable(X_target, pixels, camera)
     if usable is None or not is_rigid(T_camera_target):
         return ()
+    centre = X_target.mean(axis=0)
     rotation = log_so3(T_camera_target[:3, :3]).reshape(3, 1).copy()
-    translation = T_camera_target[:3, 3].reshape(3, 1).copy()
+    translation = (T_camera_target[:3, :3] @ centre + T_camera_target[:3, 3]).reshape(3, 1)
     criteria = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, iterations, 1e-10)
     try:
-        rotation, translation = cv2.solvePnPRefineLM(
-            X_target.copy(), usable.copy(), camera.K.copy(), None, rotation, translation, criteria
+        found = cv2.solvePnPRefineLM(
+            X_target - centre, usable.copy(), camera.K.copy(), None, rotation, translation, criteria
         )
     except cv2.error:
         return ()
-    return _checked([(rotation, translation)], X_target, pixels, camera)
+    return _checked([found], centre, X_target, pixels, camera)
 
 
 def ideal_pixels(camera: Camera, pixels: Pixels) -> Pixels:
@@ -115,30 +116,28 @@ def _solve(method: int, X_target: Points3, pixels: Pixels, camera: Camera) -> tu
         return ()
     centre = X_target.mean(axis=0)
     try:
-        # About the centroid: far from its origin a model loses digits in EPnP.
+        # About the centroid, here and below: far from its origin a model loses digits.
         _, rotations, translations, *_ = cv2.solvePnPGeneric(
             X_target - centre, usable.copy(), camera.K.copy(), None, flags=method
         )
     except cv2.error:
         return ()
-    raw: list[tuple[np.ndarray, np.ndarray]] = []
-    for rotation, translation in zip(rotations, translations, strict=True):
-        if np.isfinite(rotation).all() and np.isfinite(translation).all():
-            R = exp_so3(np.ravel(rotation))
-            raw.append((rotation, np.ravel(translation) - R @ centre))
-    return _checked(raw, X_target, pixels, camera)
+    return _checked(list(zip(rotations, translations, strict=True)), centre, X_target, pixels, camera)
 
 
 def _checked(
-    raw: Sequence[tuple[np.ndarray, np.ndarray]], X_target: Points3, pixels: Pixels, camera: Camera
+    raw: Sequence[tuple[np.ndarray, np.ndarray]], centre: Vector3, X_target: Points3, pixels: Pixels, camera: Camera
 ) -> tuple[PnpSolution, ...]:
-    """Those answers that are rigid, see every landmark in front, and explain the image better than one point would."""
+    """Those answers that are rigid, see every landmark in front, and explain the image better than one point would.
+
+    Rotation and translation are those of a target frame about the landmarks' centre.
+    """
     spread_px = float(np.sqrt(((pixels - pixels.mean(axis=0)) ** 2).mean()))
     solutions: list[PnpSolution] = []
     for rotation, translation in raw:
         T = np.eye(4)
         T[:3, :3] = exp_so3(np.ravel(rotation).astype(np.float64))
-        T[:3, 3] = np.ravel(translation)
+        T[:3, 3] = np.ravel(translation) - T[:3, :3] @ centre
         if not is_rigid(T):
             continue
         residuals = project(camera, transform(T, X_target)) - pixels

@@ -9,6 +9,10 @@
 
 namespace fairlead {
 
+/// Covariance of a pose that also covers another one, which explains the data by `nats` less well: Sigma + p d d^T, d
+/// the way to the other, p its probability. docs/estimator.md eq. (21).
+[[nodiscard]] Mat66 mixed(const Mat66& covariance, const SE3& T, const SE3& other, double nats) noexcept;
+
 /// Two poses that explain the views about equally well (flat or distant targets), followed until the data decide.
 /// docs/estimator.md eq. (21).
 class Hypotheses {
@@ -26,14 +30,15 @@ class Hypotheses {
                               const TrackerOptions& options, std::vector<Observation>& scratch) noexcept;
 
     [[nodiscard]] const pnp::RefineResult& best() const noexcept { return pose_[0]; }
-    /// Covariance of the better one that also covers the other: Sigma + p d d^T, d the way to the other, p its
-    /// probability.
+    /// Of the better one, mixed with the other.
     [[nodiscard]] Mat66 covariance() const noexcept;
 
   private:
     bool active_ = false;
     pnp::RefineResult pose_[2];
-    double cost_[2] = {0.0, 0.0};
+    double sum_[2] = {0.0, 0.0};   ///< of the costs of all views
+    double cost_[2] = {0.0, 0.0};  ///< of as many views as say something new
+    double common_ = 0.0;          ///< sum of the shares that each view after the first has in common with the others
 };
 
 }  // namespace fairlead

@@ -23,6 +23,12 @@ struct UncertainModel {
 void inflate(const Camera& camera, const UncertainModel& model, const SE3& T_camera_target, double noise_factor,
              std::span<const Observation> observations, std::vector<Observation>& out) noexcept;
 
+/// Where the target is expected to be, and how surely.
+struct Prediction {
+    SE3 T_camera_target;
+    Mat66 covariance;
+};
+
 struct StartPose {
     pnp::PosePair poses;
     bool from_prediction = false;
@@ -32,8 +38,8 @@ struct StartPose {
 /// The pose from which the joint solution starts: refined from the prediction if that explains the view, else by
 /// consensus over the view; whichever costs less. scratch must have capacity for the observations.
 [[nodiscard]] StartPose find_start(const Camera& camera, const UncertainModel& model,
-                                   std::span<const Observation> observations, const std::optional<SE3>& predicted,
-                                   double noise_factor, const TrackerOptions& options,
-                                   std::vector<Observation>& scratch) noexcept;
+                                   std::span<const Observation> observations,
+                                   const std::optional<Prediction>& predicted, double noise_factor,
+                                   const TrackerOptions& options, std::vector<Observation>& scratch) noexcept;
 
 }  // namespace fairlead

@@ -101,11 +101,8 @@ class Structure {
     bool stale_ = false;    ///< the window must be linearised anew
     bool on_path_ = false;  ///< whether the newest view is
 
-    // The quadratic of all but the newest view, told units, gradient at X_data_; its views were linearised at
-    // X_window_.
-    MatX H_data_;
-    VecX g_data_;
-    std::vector<Vec3> X_data_, X_window_;
+    window::Quadratic data_;      ///< of all but the newest view
+    std::vector<Vec3> X_window_;  ///< where its views were linearised
 
     MatX Sigma_, Yt_, SigmaYt_;
     VecX shift_;

@@ -21,10 +21,8 @@ double structure_covariance(const Problem& problem, Workspace& workspace, MatX& 
 /// (17). `determined` directions of the model are taken off.
 void update_noise_factor(Problem& problem, double determined) noexcept;
 
-/// How far the told prior is off: PriorEvidence at the data's quadratic H, g about X (told units), docs/estimator.md
-/// eq. (16).
-void update_prior_factors(Problem& problem, const MatX& H, const VecX& g, std::span<const Vec3> X,
-                          Workspace& workspace) noexcept;
+/// How far the told prior is off: PriorEvidence at the data's quadratic, docs/estimator.md eq. (16).
+void update_prior_factors(Problem& problem, const Quadratic& data, Workspace& workspace) noexcept;
 
 /// Whether the model was corrected by more than what was told of it allows: its squared distance from the prior beyond
 /// the 99.99 % point of chi-square with as many degrees of freedom as directions are determined, docs/estimator.md eq.

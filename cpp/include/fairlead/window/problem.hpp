@@ -43,6 +43,13 @@ struct Problem {
     [[nodiscard]] Loss told_loss() const noexcept { return {loss.threshold * noise_factor}; }
 };
 
+/// What views say of the landmarks, as a quadratic: told units, states eliminated, without the prior.
+struct Quadratic {
+    MatX H;  ///< 3N x 3N, lower triangle
+    VecX g;  ///< gradient at X
+    std::vector<Vec3> X;
+};
+
 /// The normal equations with all states eliminated: S dX = -g.
 struct Workspace {
     explicit Workspace(int landmarks);
@@ -67,6 +74,9 @@ struct Workspace {
 /// Assembles the data's part of S, g and the damping diagonal D in told units, states eliminated with damping; false if
 /// a state is singular.
 [[nodiscard]] bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexcept;
+
+/// S and g of the quadratic, at other landmarks.
+void assemble(const Quadratic& data, std::span<const Vec3> X, Workspace& workspace) noexcept;
 
 /// Divides the data's part by the noise factor and adds the prior and the known distances at X: the system of E itself.
 void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Workspace& workspace) noexcept;
