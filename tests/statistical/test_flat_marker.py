@@ -40,7 +40,7 @@ def flight(seed: int, corner_sigma_m: float) -> tuple[Target, np.ndarray, list[V
 @pytest.mark.parametrize("corner_sigma_m", [0.0005, 0.003])
 @pytest.mark.parametrize("method", ["track", "refine"])
 def test_the_mirror_image_of_a_marker_is_not_believed(method: str, corner_sigma_m: float) -> None:
-    """However well its corners are known: hardly any pose is wrong and sure, and the model is not bent to wrong ones."""
+    """However well its corners are known: hardly any pose is wrong and sure, and the model is not bent to them."""
     squares: list[float] = []
     model_nees: list[float] = []
     for seed in range(FLIGHTS):
