@@ -9,7 +9,7 @@ import pytest
 
 from fairlead.baselines.epnp import EpnpTracker
 from fairlead.baselines.free_window import FreeWindowOptions, WindowTracker, free_batch
-from fairlead.geometry import difference, exp_se3, project, transform
+from fairlead.geometry import adjoint, difference, exp_se3, inverse, project, transform
 from fairlead.types import Camera, Target, View
 
 CAMERA = Camera(
@@ -81,6 +81,21 @@ def test_the_covariance_is_that_of_least_squares(rng: np.random.Generator) -> No
     estimates = [batch.estimates[0] for batch in batches]
     nees = [(xi := difference(T, e.T_camera_target)) @ np.linalg.solve(e.covariance, xi) / 6.0 for e in estimates]
     assert 0.75 < np.mean(nees) < 1.3  # chi-square with 360 degrees of freedom: 1 +- 0.22 at 3 sigma
+
+
+def test_a_target_may_have_its_origin_anywhere(rng: np.random.Generator) -> None:
+    """The same pose of the landmarks, and the same covariance once both are written about the same point."""
+    target, T = target_of(box(rng)), pose(20.0)
+    to_far = np.eye(4)
+    to_far[:3, 3] = [60_000.0, -80_000.0, 500.0]
+    view = view_of(target, T, noise=0.3 * rng.standard_normal((12, 2)))
+    far = replace(target, positions=transform(to_far, target.positions))
+    near_by, from_afar = (EpnpTracker(each, CAMERA).update(view) for each in (target, far))
+    back = inverse(to_far)
+    np.testing.assert_allclose(from_afar.T_camera_target @ to_far, near_by.T_camera_target, atol=1e-6)
+    covariance = adjoint(back) @ from_afar.covariance @ adjoint(back).T
+    np.testing.assert_allclose(covariance, near_by.covariance, rtol=1e-3, atol=1e-9)
+    assert free_batch([view], far, CAMERA).estimates[0].ok
 
 
 def test_the_model_of_epnp_never_changes(rng: np.random.Generator) -> None:
