@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from fairlead.design_effect import GATE
 from fairlead.io.network_card import Calibration
-from fairlead.train.calibration import squared
+from fairlead.train.calibration import nees, squared
 from fairlead.train.findings import Findings
 
 RANGES_M = (0.0, 350.0, 700.0, 1400.0, 2500.0, np.inf)
@@ -36,7 +37,9 @@ class Line:
     false: float
     """Share of those called visible that are outside the crop [-]."""
     nees: float
-    """Mean of e^T S^-1 e / 2 of those called visible."""
+    """Mean of min(e^T S^-1 e, 18.42) / 2 of those called visible."""
+    gross: float
+    """Share of them beyond 18.42 [-]; of Gaussian errors 0.01 %."""
     inside_50: float
     """Share of them within the ellipse that should hold half."""
     inside_99: float
@@ -80,14 +83,15 @@ def _line(group: str, name: str, f: Findings, calibration: Calibration, landmark
         mean_crop_px=float(np.mean(distance[seen])),
         told=float(np.mean(called[seen])),
         false=float(np.mean((f.visibility == 0)[called])) if called.any() else 0.0,
-        nees=float(np.mean(0.5 * s)) if len(s) else float("nan"),
+        nees=float(np.mean(nees(s))) if len(s) else float("nan"),
+        gross=float(np.mean(s > GATE)) if len(s) else float("nan"),
         inside_50=float(np.mean(s < 2.0 * np.log(2.0))) if len(s) else float("nan"),
         inside_99=float(np.mean(s < 2.0 * np.log(100.0))) if len(s) else float("nan"),
     )
 
 
 HEADINGS = ("", "visible", "median px", "mean px", "median crop px", "mean crop px", "told", "false", "NEES",
-            "in 50 %", "in 99 %")  # fmt: skip
+            "gross", "in 50 %", "in 99 %")  # fmt: skip
 
 
 def markdown(table: Sequence[Line]) -> str:
@@ -97,7 +101,7 @@ def markdown(table: Sequence[Line]) -> str:
         texts.append(f"\n| {group} {' | '.join(HEADINGS)} |\n|{'---|' * len(HEADINGS)}\n")
         for line in (each for each in table if each.group == group):
             numbers = (line.median_px, line.mean_px, line.median_crop_px, line.mean_crop_px)
-            shares = (line.told, line.false, line.nees, line.inside_50, line.inside_99)
+            shares = (line.told, line.false, line.nees, line.gross, line.inside_50, line.inside_99)
             cells = [f"{value:.2f}" for value in numbers] + [f"{value:.3f}" for value in shares]
             texts.append(f"| {line.name} | {line.visible} | {' | '.join(cells)} |\n")
     return "".join(texts).lstrip("\n")
@@ -124,8 +128,8 @@ def draw_reliability(path: Path, findings: Findings, calibration: Calibration, l
     left.set_xlabel("should lie inside [-]")
     left.set_ylabel("lie inside [-]")
     left.legend(fontsize=8)
-    nees = 0.5 * squared(rows, calibration, len(landmarks))
-    means = [np.mean(nees[rows.landmark == k]) if (rows.landmark == k).any() else 0.0 for k in range(len(landmarks))]
+    values = nees(squared(rows, calibration, len(landmarks)))
+    means = [np.mean(values[rows.landmark == k]) if (rows.landmark == k).any() else 0.0 for k in range(len(landmarks))]
     right.bar(range(len(landmarks)), means, color="tab:blue")
     right.axhspan(0.8, 1.25, color="tab:green", alpha=0.15)
     right.set_xticks(range(len(landmarks)), landmarks, rotation=60, ha="right", fontsize=8)

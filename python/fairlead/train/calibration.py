@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from fairlead.design_effect import GATE
 from fairlead.io.network_card import Calibration
 from fairlead.train.findings import Findings
 
@@ -30,6 +31,14 @@ def squared(findings: Findings, calibration: Calibration, landmarks: int) -> np.
     return np.einsum("mi,mij,mj->m", findings.error, np.linalg.inv(S), findings.error)
 
 
+def nees(squares: np.ndarray) -> np.ndarray:
+    """(m,) min(s, 18.42) / 2: a gross error, beyond what 99.99 % of Gaussian ones keep, counts as one at that limit.
+
+    Unbounded, a handful of pictures that were taken the wrong way round decides on the mean of thousands.
+    """
+    return 0.5 * np.minimum(squares, GATE)
+
+
 def visible_threshold(findings: Findings) -> float:
     """The logit above which calling a landmark visible is right most often (F1 of visible landmarks)."""
     seen = findings.visibility == 2
@@ -41,7 +50,7 @@ def visible_threshold(findings: Findings) -> float:
 
 
 def fit(findings: Findings, landmarks: int) -> Calibration:
-    """Threshold, floor and shape of the tail by likelihood; then scales by which the mean NEES is one.
+    """Threshold, floor and shape of the tail by likelihood, each with the scales by which the mean `nees` is one.
 
     Bivariate Student t with covariance S and nu degrees of freedom, s = e^T S^-1 e, docs/networks.md eq. (7):
     log p = -1/2 log det S + log(nu / (nu - 2)) - (1 + nu / 2) log(1 + s / (nu - 2)) + const.
@@ -62,14 +71,13 @@ def fit(findings: Findings, landmarks: int) -> Calibration:
 
 
 def _scales(rows: Findings, calibration: Calibration, landmarks: int) -> tuple[float, ...]:
-    """The scale of each landmark with which the mean of s / 2 is one, by bisection of its logarithm."""
+    """The scale of each landmark with which the mean `nees` is one, by bisection of its logarithm."""
     low, high = np.full(landmarks, -8.0), np.full(landmarks, 12.0)
     counts = np.bincount(rows.landmark, minlength=landmarks).astype(float)
     for _ in range(40):
         middle = 0.5 * (low + high)
         tried = Calibration(floor_px=calibration.floor_px, scale=tuple(np.exp(middle)))
-        nees = 0.5 * squared(rows, tried, landmarks)
-        sums = np.bincount(rows.landmark, weights=nees, minlength=landmarks)
+        sums = np.bincount(rows.landmark, weights=nees(squared(rows, tried, landmarks)), minlength=landmarks)
         everyone = sums.sum() / max(counts.sum(), 1.0)
         mean = (sums + ENOUGH * everyone) / (counts + ENOUGH)
         low, high = np.where(mean > 1.0, middle, low), np.where(mean > 1.0, high, middle)

@@ -12,7 +12,7 @@ from fairlead.io.errors import InputError
 from fairlead.io.network_card import Calibration
 from fairlead.train.accuracy import draw_reliability, lines, markdown
 from fairlead.train.calibrate import read_calibration, write_calibration
-from fairlead.train.calibration import declared, fit, squared, visible_threshold
+from fairlead.train.calibration import declared, fit, nees, squared, visible_threshold
 from fairlead.train.findings import Findings
 
 FACTORS = np.array([0.5, 1.0, 3.0])
@@ -50,6 +50,18 @@ def test_factor_and_tail_are_found(dof: float) -> None:
     fresh = findings(dof, seed=1)
     told = declared(fresh, calibration.visible_threshold)
     assert 0.5 * np.mean(squared(fresh.where(told), calibration, 3)) == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_few_gross_errors_do_not_decide() -> None:
+    """One error in two hundred is a hundred times as long: counted in full it would widen everything fifty times."""
+    clean, spoilt = findings(30.0), findings(30.0)
+    spoilt.error[::200] *= 100.0
+    scale = np.array(fit(spoilt, 3).scale) / np.array(fit(clean, 3).scale)
+    assert (scale < 1.15).all()
+    rows = spoilt.where(declared(spoilt, fit(spoilt, 3).visible_threshold))
+    s = squared(rows, fit(spoilt, 3), 3)
+    assert nees(s).mean() == pytest.approx(1.0, abs=0.02)
+    assert 0.5 * s.mean() > 20.0
 
 
 def test_the_threshold_parts_what_is_seen_from_what_is_not() -> None:
