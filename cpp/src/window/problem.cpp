@@ -45,11 +45,12 @@ void add_lengths(std::span<const LengthMeasurement> lengths, std::span<const Vec
     }
 }
 
-/// The prior at X, divided by its factor. With e the difference of X from the told landmarks but for its scale s, y =
-/// P0^-1 e, p = P0^-1 x0 and i = x0^T p: d = (s - 1) x0 + e / s has
+/// S times the data's scale, and the prior at X, divided by its factor. With e the difference of X from the told
+/// landmarks but for its scale s, y = P0^-1 e, p = P0^-1 x0 and i = x0^T p: d = (s - 1) x0 + e / s has
 ///   J^T P0^-1 d = (s - 1 - y^T e / (i s^3)) p + y / s^2,
 ///   J^T P0^-1 J = P0^-1 / s^2 + ((1 - 1 / s^2) / i + y^T e / (i^2 s^4)) p p^T - (y p^T + p y^T) / (i s^3).
-void add_prior(const LandmarkPrior& prior, std::span<const Vec3> X, double factor, Workspace& workspace) noexcept {
+void add_prior(const LandmarkPrior& prior, std::span<const Vec3> X, double factor, double data_scale,
+               Workspace& workspace) noexcept {
     const double s = prior.scale(X);
     const double i = prior.scale_information;
     const VecX& p = prior.pull;
@@ -63,9 +64,9 @@ void add_prior(const LandmarkPrior& prior, std::span<const Vec3> X, double facto
     workspace.D += prior.information.diagonal() / (factor * s * s);
     for (Eigen::Index c = 0; c < p.size(); ++c) {
         const Eigen::Index rows = p.size() - c;
-        workspace.S.col(c).tail(rows) += prior.information.col(c).tail(rows) / (factor * s * s) +
-                                         ((own * p[c] + mixed * y[c]) / factor) * p.tail(rows) +
-                                         (mixed * p[c] / factor) * y.tail(rows);
+        auto column = workspace.S.col(c).tail(rows);
+        column = data_scale * column + prior.information.col(c).tail(rows) / (factor * s * s) +
+                 ((own * p[c] + mixed * y[c]) / factor) * p.tail(rows) + (mixed * p[c] / factor) * y.tail(rows);
     }
 }
 
@@ -76,7 +77,7 @@ Workspace::Workspace(int landmarks)
       cholesky(3 * landmarks),
       evidence(landmarks),
       X_before(static_cast<std::size_t>(landmarks), Vec3::Zero()) {
-    product.setZero(3 * landmarks, 3 * landmarks);
+    product.resize(3 * landmarks, 3 * landmarks);
     S.setZero(3 * landmarks, 3 * landmarks);
     for (VecX* vector : {&g, &dX, &D, &step, &pulled}) vector->setZero(3 * landmarks);
 }
@@ -103,7 +104,7 @@ bool linearise(Problem& problem) noexcept {
 }
 
 bool assemble_data(Problem& problem, double damping, Workspace& workspace) noexcept {
-    workspace.S.setZero();
+    workspace.S.triangularView<Eigen::Lower>().setZero();
     workspace.g.setZero();
     workspace.D.setZero();
     for (ViewBlock& view : problem.views) {
@@ -130,15 +131,17 @@ void assemble(const Quadratic& data, std::span<const Vec3> X, Workspace& workspa
 
 void scale_and_add_prior(const Problem& problem, std::span<const Vec3> X, Workspace& workspace) noexcept {
     const double data_scale = 1.0 / problem.noise_factor;
-    workspace.S *= data_scale;
     workspace.g *= data_scale;
     workspace.D *= data_scale;
+    if (problem.prior) {
+        add_prior(*problem.prior, X, problem.prior_factors.believed, data_scale, workspace);
+        workspace.S.diagonal() += problem.prior->aside;
+        workspace.D += problem.prior->aside;
+        workspace.g += problem.prior->aside.cwiseProduct(stacked(X));
+    } else {
+        workspace.S *= data_scale;
+    }
     add_lengths(problem.lengths, X, workspace);
-    if (!problem.prior) return;
-    add_prior(*problem.prior, X, problem.prior_factors.believed, workspace);
-    workspace.S.diagonal() += problem.prior->aside;
-    workspace.D += problem.prior->aside;
-    workspace.g += problem.prior->aside.cwiseProduct(stacked(X));
 }
 
 }  // namespace fairlead::window
