@@ -18,7 +18,7 @@ SURE_AND_WRONG = 40.0
 
 
 def flight(seed: int, corner_sigma_m: float) -> tuple[Target, np.ndarray, list[View], np.ndarray]:
-    """A marker of 0.5 m, 2 to 30 degrees off the normal, 6 m away and coming nearer while the camera goes round it."""
+    """A marker of 0.5 m, 2 to 40 degrees off the normal, 6 m away and coming nearer while the camera goes round it."""
     rng = np.random.default_rng(seed)
     true = SQUARE + corner_sigma_m * rng.standard_normal(SQUARE.shape)
     azimuth, elevation = rng.uniform(0.0, 2.0 * np.pi), np.radians(rng.uniform(60.0, 88.0))

@@ -56,10 +56,9 @@ def test_a_few_gross_errors_do_not_decide() -> None:
     """One error in two hundred is a hundred times as long: counted in full it would widen everything fifty times."""
     clean, spoilt = findings(30.0), findings(30.0)
     spoilt.error[::200] *= 100.0
-    scale = np.array(fit(spoilt, 3).scale) / np.array(fit(clean, 3).scale)
-    assert (scale < 1.15).all()
-    rows = spoilt.where(declared(spoilt, fit(spoilt, 3).visible_threshold))
-    s = squared(rows, fit(spoilt, 3), 3)
+    calibration = fit(spoilt, 3)
+    assert (np.array(calibration.scale) / np.array(fit(clean, 3).scale) < 1.15).all()
+    s = squared(spoilt.where(declared(spoilt, calibration.visible_threshold)), calibration, 3)
     assert nees(s).mean() == pytest.approx(1.0, abs=0.02)
     assert 0.5 * s.mean() > 20.0
 
